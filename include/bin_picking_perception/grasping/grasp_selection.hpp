@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bin_picking_perception/detector.hpp"
+#include "bin_picking_perception/model/part.hpp"
+#include "bin_picking_perception/scene/bin.hpp"
+#include "bin_picking_perception/grasping/gripper.hpp"
+
+namespace bin_picking
+{
+/// Limits on the grasps that are offered.
+struct GraspParameters
+{
+  double max_tilt = 0.785398;         // between the approach and straight down into the bin (or the view direction)
+  double min_matching_rate = 0.85;    // the paper: above 85 % the robot succeeds
+  double bin_clearance = 0.003;
+  int continuous_symmetry_steps = 12;
+  int max_grasps = 20;
+
+  void visit(ParameterVisitor& v);
+};
+
+enum class GraspRejection
+{
+  None,
+  MatchingRateTooLow,
+  TiltTooLarge,
+  OpeningTooSmall,   ///< the gripper cannot open as far as the grasp asks
+  BinWallCollision,
+  BinFloorCollision
+};
+
+const char* toString(GraspRejection rejection);
+
+/// A grasp of one detection. All poses are of the frame between the finger tips: Z = approach, Y = closing.
+struct Grasp
+{
+  std::string part;
+  std::string grasp_id;
+  std::size_t detection_index = 0;  ///< into DetectionResult::detections
+  int symmetry_variant = 0;         ///< index into the sampled symmetry; 0 = as written
+  Pose T_camera_pre_grasp = Pose::Identity();
+  Pose T_camera_grasp = Pose::Identity();
+  Pose T_camera_retreat = Pose::Identity();
+  Pose T_tip_object = Pose::Identity();  ///< the part in the hand, for placing
+  double width = 0;                 ///< metres, when holding
+  double opening = 0;               ///< metres, on the way in
+  int priority = 0;
+  double tilt = 0;                  ///< rad
+  double bin_clearance = 0;         ///< smallest distance to the bin on the way, metres; NaN without a bin
+  double quality = 0;               ///< [0, 1], the sort key
+  GraspRejection rejection = GraspRejection::None;
+  std::string reason;               ///< one sentence with the numbers; empty if not rejected
+};
+
+struct GraspSelection
+{
+  std::vector<Grasp> grasps;    ///< pickable, best first
+  std::vector<Grasp> rejected;  ///< with reasons
+};
+
+/// Expands the grasps of each detected part by its symmetry, checks and ranks them.
+/// \param parts definitions by name; a detection of a part without definition has no grasps
+/// \param bin nullptr: no wall check, tilt is measured against the camera's view direction
+GraspSelection selectGrasps(const std::vector<Detection>& detections, const std::vector<PartDefinition>& parts,
+                            const Gripper& gripper, const Bin* bin, const GraspParameters& parameters);
+}  // namespace bin_picking

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <vector>
+
+#include "bin_picking_perception/common/deadline.hpp"
+#include "bin_picking_perception/common/oriented_points.hpp"
+#include "bin_picking_perception/common/parameters.hpp"
+#include "bin_picking_perception/model/trained_model.hpp"
+
+namespace bin_picking
+{
+class Executor;
+
+struct VotingParameters
+{
+  double reference_share = 0.2;      // of the scene samples
+  int min_references = 30;
+  double max_pair_distance = 1.0;    // of the diameter
+  double weight = 3;                 // W of Equation 8
+  double curvature_spread = 0.3;     // share of a curvature bin at its ends that also votes in the neighbour bin
+  int max_bucket = 0;                // 0: no limit
+  int peaks_per_reference = 2;
+  double min_peak_share = 0.8;       // of the highest peak
+  bool sum_adjacent_angles = true;
+
+  void visit(ParameterVisitor& v);
+};
+
+/// A pose from the accumulator of one reference point.
+struct Hypothesis
+{
+  Pose T_camera_object = Pose::Identity();
+  double votes = 0;
+  int reference = 0;    ///< scene sample
+  int model_point = 0;  ///< row of the accumulator
+};
+
+struct VotingStatistics
+{
+  std::uint64_t references = 0;
+  std::uint64_t pairs = 0;   ///< scene pairs looked up
+  std::uint64_t votes = 0;
+};
+
+struct VotingResult
+{
+  std::vector<Hypothesis> hypotheses;  ///< ordered by reference, then votes
+  VotingStatistics statistics;
+  bool partial = false;                ///< the deadline passed
+};
+
+/// Every n-th sample, evenly over the scene.
+std::vector<int> chooseReferences(std::size_t num_samples, const VotingParameters& parameters);
+
+/// Sections 2.2.2 and 2.2.3. For each reference point: Equation 5 with every sample within the part's diameter, look-up,
+/// weighted votes (Equation 8) in the accumulator of model points x angle steps, and its peaks as poses (Equation 6).
+/// \param scene with curvature; NaN curvature votes in every curvature bin
+/// \param curvature_complete per point, 0: treat the curvature as unknown; empty: all are known
+VotingResult voteForPoses(const TrainedModel& model, const OrientedPoints& scene,
+                          const std::vector<std::uint8_t>& curvature_complete, const std::vector<int>& references,
+                          const VotingParameters& parameters, const Deadline& deadline, const Executor& executor);
+}  // namespace bin_picking

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <string>
+
+#include "bin_picking_perception/common/parameters.hpp"
+#include "bin_picking_perception/scene/bin.hpp"
+#include "bin_picking_perception/scene/depth_grid.hpp"
+
+namespace pcl
+{
+struct PointXYZ;
+template <typename PointT>
+class PointCloud;
+}  // namespace pcl
+
+namespace bin_picking
+{
+/// What is taken as a measurement, and the box in which parts are searched. The limits hold in the camera frame; a bin
+/// given with the request narrows them further.
+struct InputParameters
+{
+  double x_min = -10;
+  double x_max = 10;
+  double y_min = -10;
+  double y_max = 10;
+  double z_min = 0.05;
+  double z_max = 10;
+  double bin_floor_margin = 0.003;
+  double bin_wall_margin = 0.0;
+  double max_plausible_depth = 20;
+  double max_projection_error = 2;
+  int empty_bin_points = 50;
+
+  void visit(ParameterVisitor& v);
+};
+
+/// The organized cloud as a grid: NaN, infinity, (0, 0, 0) and absurdly large values become invalid; the pinhole camera is
+/// fitted to the points.
+/// \throws CloudError Empty, Unorganized, AllInvalid, UnitSuspect (median depth above max_plausible_depth: the message
+///   says that it looks like millimetres), NoProjection (pixel residual above max_projection_error)
+DepthGrid makeGrid(const pcl::PointCloud<pcl::PointXYZ>& cloud, const InputParameters& parameters);
+
+/// Invalidates what lies outside the limits and, if a bin is given, outside of its inner box (above floor + margin, also
+/// above the rim).
+void cropToRegion(DepthGrid& grid, const InputParameters& parameters, const Bin* bin);
+
+/// Least squares fit of a pinhole camera to the grid's points. \param error median pixel residual
+PinholeCamera fitPinholeCamera(const DepthGrid& grid, double& error);
+
+/// Reads an organized PCD file. \throws FileError missing, not PCD, no x/y/z
+DepthGrid loadGrid(const std::string& path, const InputParameters& parameters);
+
+/// Writes an organized binary PCD file (x y z float32, metres, NaN). \throws FileError
+void saveGrid(const DepthGrid& grid, const std::string& path);
+}  // namespace bin_picking
