@@ -5,21 +5,28 @@
 #include <string>
 #include <vector>
 
+#include "bin_picking_perception/common/parameters.hpp"
 #include "bin_picking_perception/detector.hpp"
+#include "bin_picking_perception/grasping/gripper.hpp"
 #include "bin_picking_perception/model/part.hpp"
 #include "bin_picking_perception/scene/bin.hpp"
-#include "bin_picking_perception/grasping/gripper.hpp"
 
 namespace bin_picking
 {
 /// Limits on the grasps that are offered.
 struct GraspParameters
 {
-  double max_tilt = 0.785398;         // between the approach and straight down into the bin (or the view direction)
-  double min_matching_rate = 0.85;    // the paper: above 85 % the robot succeeds
+  double max_tilt = 0.785398;       // between the approach and straight down into the bin (or the view direction)
+  double min_matching_rate = 0.85;  // the paper: above 85 % the robot succeeds
   double bin_clearance = 0.003;
   int continuous_symmetry_steps = 12;
   int max_grasps = 20;
+  // What makes one grasp better than another: shares of the quality, relative to their sum.
+  double weight_score = 4;
+  double weight_height = 2;
+  double weight_priority = 2;
+  double weight_tilt = 1;
+  double weight_clearance = 1;
 
   void visit(ParameterVisitor& v);
 };
@@ -29,11 +36,12 @@ enum class GraspRejection
   None,
   MatchingRateTooLow,
   TiltTooLarge,
-  OpeningTooSmall,   ///< the gripper cannot open as far as the grasp asks
+  OpeningTooSmall,  ///< the gripper cannot open as far as the grasp asks
   BinWallCollision,
   BinFloorCollision
 };
 
+/// "none", "matching_rate_too_low", ... for logs and messages.
 const char* toString(GraspRejection rejection);
 
 /// A grasp of one detection. All poses are of the frame between the finger tips: Z = approach, Y = closing.
@@ -47,14 +55,14 @@ struct Grasp
   Pose T_camera_grasp = Pose::Identity();
   Pose T_camera_retreat = Pose::Identity();
   Pose T_tip_object = Pose::Identity();  ///< the part in the hand, for placing
-  double width = 0;                 ///< metres, when holding
-  double opening = 0;               ///< metres, on the way in
+  double width = 0;                      ///< metres, when holding
+  double opening = 0;                    ///< metres, on the way in
   int priority = 0;
-  double tilt = 0;                  ///< rad
-  double bin_clearance = 0;         ///< smallest distance to the bin on the way, metres; NaN without a bin
-  double quality = 0;               ///< [0, 1], the sort key
+  double tilt = 0;           ///< rad
+  double bin_clearance = 0;  ///< smallest distance to the bin on the way, metres; NaN without a bin
+  double quality = 0;        ///< [0, 1], the sort key
   GraspRejection rejection = GraspRejection::None;
-  std::string reason;               ///< one sentence with the numbers; empty if not rejected
+  std::string reason;  ///< one sentence with the numbers; empty if not rejected
 };
 
 struct GraspSelection
@@ -64,8 +72,11 @@ struct GraspSelection
 };
 
 /// Expands the grasps of each detected part by its symmetry, checks and ranks them.
-/// \param parts definitions by name; a detection of a part without definition has no grasps
-/// \param bin nullptr: no wall check, tilt is measured against the camera's view direction
+/// Order: quality (to 1e-6), then the better detection, then the order in the part's definition, then the symmetry
+/// variant. A matching rate or an opening that rules out a grasp rules out all its symmetric copies: it is then listed
+/// once. \param parts definitions by name; a detection of a part without definition has no grasps \param bin nullptr:
+/// no wall check, tilt is measured against the camera's view direction \throws ParameterError a bin is given and the
+/// gripper has no boxes
 GraspSelection selectGrasps(const std::vector<Detection>& detections, const std::vector<PartDefinition>& parts,
                             const Gripper& gripper, const Bin* bin, const GraspParameters& parameters);
 }  // namespace bin_picking

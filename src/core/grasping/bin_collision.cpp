@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_collision.hpp"
+
+#include <limits>
+
+#include "bin_picking_perception/common/error.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+OrientedBox boxAt(const Pose& T_camera_frame, const Eigen::Vector3d& center, const Eigen::Vector3d& size)
+{
+  OrientedBox box;
+  box.T_frame_box = T_camera_frame * Eigen::Translation3d(center);
+  box.half_size = 0.5 * size;
+  return box;
+}
+
+OrientedBox gripperBoxAt(const GripperBox& part, const GripperMotion& motion)
+{
+  const Eigen::Vector3d center = part.center + 0.5 * part.finger * motion.opening * Eigen::Vector3d::UnitY();
+  return boxAt(motion.T_camera_start, center, part.size);
+}
+}  // namespace
+
+BinObstacles::BinObstacles(const Bin& bin)
+{
+  const double t = bin.wall_thickness;
+  const Eigen::Vector3d inner = bin.inner_size;
+  const Eigen::Vector3d outer = inner + Eigen::Vector3d(2 * t, 2 * t, 0);
+  const auto add = [&](const char* name, bool floor, const Eigen::Vector3d& center, const Eigen::Vector3d& size) {
+    sides_.push_back({name, floor, boxAt(bin.T_camera_bin, center, size)});
+  };
+  // The walls stand on the floor and end at the rim; the floor reaches under them.
+  const double x = 0.5 * (inner.x() + t);
+  const double y = 0.5 * (inner.y() + t);
+  const double z = 0.5 * inner.z();
+  add("floor", true, {0, 0, -0.5 * t}, {outer.x(), outer.y(), t});
+  add("wall at +x", false, {x, 0, z}, {t, outer.y(), inner.z()});
+  add("wall at -x", false, {-x, 0, z}, {t, outer.y(), inner.z()});
+  add("wall at +y", false, {0, y, z}, {outer.x(), t, inner.z()});
+  add("wall at -y", false, {0, -y, z}, {outer.x(), t, inner.z()});
+}
+
+BinClearance BinObstacles::clearance(const Gripper& gripper, const std::vector<GripperMotion>& motions) const
+{
+  if (gripper.boxes.empty())
+    throw ParameterError("The gripper \"" + gripper.name +
+                         "\" has no boxes, so that its way into the bin cannot be "
+                         "checked; describe its palm and fingers in the gripper file.");
+  BinClearance closest{std::numeric_limits<double>::infinity(), false, {}, {}};
+  for (const GripperMotion& motion : motions)
+    for (const GripperBox& part : gripper.boxes)
+    {
+      const OrientedBox box = gripperBoxAt(part, motion);
+      for (const Side& side : sides_)
+      {
+        const double distance = sweptBoxClearance(box, motion.motion_camera, side.box);
+        if (distance < closest.distance)
+          closest = {distance, side.floor, part.name, side.name};
+      }
+    }
+  return closest;
+}
+}  // namespace bin_picking

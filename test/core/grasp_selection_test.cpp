@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_picking_perception/grasping/grasp_selection.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bin_picking_perception/common/error.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+using Eigen::AngleAxisd;
+using Eigen::Translation3d;
+using Eigen::Vector3d;
+
+constexpr double DEGREE = M_PI / 180;
+
+/// Palm 100 mm above the tips and two fingers of 10 x 6 x 80 mm that end 10 mm beyond them.
+Gripper twoFingerGripper()
+{
+  Gripper gripper;
+  gripper.name = "two_finger";
+  gripper.max_opening = 0.095;
+  gripper.boxes = {{"palm", {0, 0, -0.12}, {0.06, 0.12, 0.04}, 0},
+                   {"finger +", {0, 0.003, -0.03}, {0.01, 0.006, 0.08}, 1},
+                   {"finger -", {0, -0.003, -0.03}, {0.01, 0.006, 0.08}, -1}};
+  return gripper;
+}
+
+/// A bin of 400 x 300 x 150 mm, 0.9 m in front of a camera that looks straight down.
+Bin binBelowCamera()
+{
+  Bin bin;
+  bin.T_camera_bin = Translation3d(0, 0, 0.9) * AngleAxisd(M_PI, Vector3d::UnitX());
+  bin.inner_size = {0.4, 0.3, 0.15};
+  return bin;
+}
+
+/// Taken from above at its origin: in the part frame the approach is -z, the fingers close along y.
+GraspDefinition graspFromAbove(const std::string& id)
+{
+  GraspDefinition grasp;
+  grasp.id = id;
+  grasp.T_object_tip = Pose(AngleAxisd(M_PI, Vector3d::UnitX()));
+  grasp.width = 0.03;
+  grasp.opening = 0.05;
+  return grasp;
+}
+
+PartDefinition partWith(const std::vector<GraspDefinition>& grasps)
+{
+  PartDefinition part;
+  part.name = "part";
+  part.grasps = grasps;
+  return part;
+}
+
+/// A part in the bin, its z axis upwards before `rotation`.
+Detection detectionAt(const Vector3d& position_bin, const Eigen::Quaterniond& rotation = Eigen::Quaterniond::Identity())
+{
+  Detection detection;
+  detection.part = "part";
+  detection.T_camera_object = binBelowCamera().T_camera_bin * Translation3d(position_bin) * rotation;
+  detection.score = 0.9;
+  detection.matching_rate = 0.97;
+  return detection;
+}
+
+GraspSelection selectInBin(const std::vector<Detection>& detections, const PartDefinition& part,
+                           const GraspParameters& parameters = {})
+{
+  const Bin bin = binBelowCamera();
+  return selectGrasps(detections, {part}, twoFingerGripper(), &bin, parameters);
+}
+
+Vector3d inBin(const Pose& T_camera_tip)
+{
+  return binBelowCamera().T_camera_bin.inverse() * T_camera_tip.translation();
+}
+
+TEST(GraspSelection, APartInTheMiddleIsTakenStraightDown)
+{
+  GraspDefinition definition = graspFromAbove("top");
+  definition.approach = 0.08;
+  definition.retreat = 0.12;
+  const GraspSelection selection = selectInBin({detectionAt({0.02, -0.01, 0.05})}, partWith({definition}));
+  ASSERT_EQ(selection.grasps.size(), 1u);
+  EXPECT_TRUE(selection.rejected.empty());
+  const Grasp& grasp = selection.grasps[0];
+  EXPECT_EQ(grasp.part, "part");
+  EXPECT_EQ(grasp.grasp_id, "top");
+  EXPECT_TRUE(inBin(grasp.T_camera_grasp).isApprox(Vector3d(0.02, -0.01, 0.05), 1e-12));
+  EXPECT_TRUE(inBin(grasp.T_camera_pre_grasp).isApprox(Vector3d(0.02, -0.01, 0.13), 1e-12));
+  EXPECT_TRUE(inBin(grasp.T_camera_retreat).isApprox(Vector3d(0.02, -0.01, 0.17), 1e-12));
+  EXPECT_TRUE(grasp.T_camera_pre_grasp.linear().isApprox(grasp.T_camera_grasp.linear()));
+  EXPECT_TRUE(grasp.T_camera_retreat.linear().isApprox(grasp.T_camera_grasp.linear()));
+  EXPECT_NEAR(grasp.tilt, 0, 1e-7);
+  // The fingers end 10 mm below the tips: 40 mm above the floor, which is nearer than any wall.
+  EXPECT_NEAR(grasp.bin_clearance, 0.04, 1e-9);
+  EXPECT_GT(grasp.quality, 0);
+  EXPECT_LE(grasp.quality, 1);
+  EXPECT_EQ(grasp.rejection, GraspRejection::None);
+  EXPECT_TRUE(grasp.reason.empty());
+}
+
+TEST(GraspSelection, TheObjectInTheHandIsConsistentWithTheDetection)
+{
+  PartDefinition part = partWith({graspFromAbove("top")});
+  part.grasps[0].T_object_tip = Translation3d(0.01, 0.02, 0.005) * part.grasps[0].T_object_tip;
+  part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, Vector3d::UnitZ()));
+  const Detection detection = detectionAt({0, 0, 0.06}, Eigen::Quaterniond(AngleAxisd(0.3, Vector3d::UnitX())));
+  const GraspSelection selection = selectInBin({detection}, part);
+  ASSERT_EQ(selection.grasps.size(), 2u);
+  for (const Grasp& grasp : selection.grasps)
+    EXPECT_TRUE((grasp.T_camera_grasp * grasp.T_tip_object).isApprox(detection.T_camera_object, 1e-12));
+}
+
+TEST(GraspSelection, SymmetricCopiesAreDistinctPosesThatHoldTheSameGeometry)
+{
+  // A flat part that equals itself after half a turn about z. It is taken off-centre, by a corner feature.
+  PartDefinition part = partWith({graspFromAbove("corner")});
+  part.grasps[0].T_object_tip = Translation3d(0.03, 0.01, 0) * part.grasps[0].T_object_tip;
+  part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, Vector3d::UnitZ()));
+  const std::vector<Vector3d> surface = {{0.03, 0.01, 0.0},  {-0.03, -0.01, 0.0}, {0.04, 0.0, 0.01},
+                                         {-0.04, 0.0, 0.01}, {0.01, 0.02, -0.01}, {-0.01, -0.02, -0.01}};
+  const Detection detection = detectionAt({0, 0, 0.06});
+  const GraspSelection selection = selectInBin({detection}, part);
+  ASSERT_EQ(selection.grasps.size(), 2u);
+  EXPECT_NE(selection.grasps[0].symmetry_variant, selection.grasps[1].symmetry_variant);
+  EXPECT_NEAR(
+      (selection.grasps[0].T_camera_grasp.translation() - selection.grasps[1].T_camera_grasp.translation()).norm(),
+      2 * std::hypot(0.03, 0.01), 1e-9);
+
+  // Seen from the fingers, the measured surface is the same for every copy.
+  for (const Vector3d& p : surface)
+  {
+    const Vector3d as_written = part.grasps[0].T_object_tip.inverse() * p;
+    for (const Grasp& grasp : selection.grasps)
+    {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Vector3d& q : surface)
+        nearest =
+            std::min(nearest, (grasp.T_camera_grasp.inverse() * detection.T_camera_object * q - as_written).norm());
+      EXPECT_NEAR(nearest, 0, 1e-9);
+    }
+  }
+}
+
+TEST(GraspSelection, VariantZeroIsTheGraspAsWritten)
+{
+  PartDefinition part = partWith({graspFromAbove("top")});
+  part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, Vector3d::UnitZ()));
+  part.grasps[0].symmetric = false;
+  const Detection detection = detectionAt({0, 0, 0.06});
+  const GraspSelection selection = selectInBin({detection}, part);
+  ASSERT_EQ(selection.grasps.size(), 1u);
+  EXPECT_EQ(selection.grasps[0].symmetry_variant, 0);
+  EXPECT_TRUE(
+      selection.grasps[0].T_camera_grasp.isApprox(detection.T_camera_object * part.grasps[0].T_object_tip, 1e-12));
+}
+
+TEST(GraspSelection, AnAxisOfRevolutionOffersItsSteps)
+{
+  PartDefinition part = partWith({graspFromAbove("top")});
+  part.symmetry.continuous = Symmetry::Axis{Vector3d::UnitZ(), Vector3d::Zero()};
+  GraspParameters parameters;
+  parameters.continuous_symmetry_steps = 8;
+  EXPECT_EQ(selectInBin({detectionAt({0, 0, 0.06})}, part, parameters).grasps.size(), 8u);
+}
+
+TEST(GraspSelection, TiltIsMeasuredAgainstStraightDownAndLimited)
+{
+  GraspParameters parameters;
+  parameters.max_tilt = 30 * DEGREE;
+  const auto tilted = [](double degrees) {
+    return detectionAt({0, 0, 0.1}, Eigen::Quaterniond(AngleAxisd(degrees * DEGREE, Vector3d::UnitX())));
+  };
+  const GraspSelection selection =
+      selectInBin({tilted(29.9), tilted(30.1)}, partWith({graspFromAbove("top")}), parameters);
+  ASSERT_EQ(selection.grasps.size(), 1u);
+  ASSERT_EQ(selection.rejected.size(), 1u);
+  EXPECT_EQ(selection.grasps[0].detection_index, 0u);
+  EXPECT_NEAR(selection.grasps[0].tilt, 29.9 * DEGREE, 1e-9);
+  EXPECT_EQ(selection.rejected[0].rejection, GraspRejection::TiltTooLarge);
+  EXPECT_NE(selection.rejected[0].reason.find("30.1 deg"), std::string::npos) << selection.rejected[0].reason;
+  EXPECT_NE(selection.rejected[0].reason.find("30.0 deg"), std::string::npos) << selection.rejected[0].reason;
+}
+
+TEST(GraspSelection, ATiltedRetreatStillGoesStraightUp)
+{
+  const Detection detection = detectionAt({0, 0, 0.1}, Eigen::Quaterniond(AngleAxisd(0.5, Vector3d::UnitX())));
+  const GraspSelection selection = selectInBin({detection}, partWith({graspFromAbove("top")}));
+  ASSERT_EQ(selection.grasps.size(), 1u);
+  const Grasp& grasp = selection.grasps[0];
+  EXPECT_TRUE((inBin(grasp.T_camera_retreat) - inBin(grasp.T_camera_grasp)).isApprox(Vector3d(0, 0, 0.1), 1e-9));
+  const Vector3d approach_bin = inBin(grasp.T_camera_grasp) - inBin(grasp.T_camera_pre_grasp);
+  EXPECT_TRUE(approach_bin.isApprox(0.08 * Vector3d(0, std::sin(0.5), -std::cos(0.5)), 1e-9))
+      << approach_bin.transpose();
+}
+
+TEST(GraspSelection, FingersMustNotTouchAWall)
+{
+  // The outer face of a finger is opening / 2 + 6 mm = 31 mm from the tips, along y; the wall is at 150 mm. The palm is
+  // wider, but 100 mm above the tips and so 20 mm above the rim.
+  const PartDefinition part = partWith({graspFromAbove("top")});
+  const double touching = 0.15 - 0.031;
+  const GraspSelection free = selectInBin({detectionAt({0, touching - 0.004, 0.07})}, part);
+  ASSERT_EQ(free.grasps.size(), 1u);
+  EXPECT_NEAR(free.grasps[0].bin_clearance, 0.004, 1e-9);
+
+  const GraspSelection near_wall = selectInBin({detectionAt({0, touching - 0.002, 0.07})}, part);
+  ASSERT_EQ(near_wall.rejected.size(), 1u);
+  EXPECT_EQ(near_wall.rejected[0].rejection, GraspRejection::BinWallCollision);
+  EXPECT_NE(near_wall.rejected[0].reason.find("2.0 mm"), std::string::npos) << near_wall.rejected[0].reason;
+  EXPECT_NE(near_wall.rejected[0].reason.find("wall at +y"), std::string::npos) << near_wall.rejected[0].reason;
+
+  const GraspSelection in_wall = selectInBin({detectionAt({0, touching + 0.005, 0.07})}, part);
+  ASSERT_EQ(in_wall.rejected.size(), 1u);
+  EXPECT_EQ(in_wall.rejected[0].rejection, GraspRejection::BinWallCollision);
+  EXPECT_LT(in_wall.rejected[0].bin_clearance, 0);
+}
+
+TEST(GraspSelection, TurningTheFingersAlongTheWallFreesAGrasp)
+{
+  // The same part at the same place: across the wall it is blocked, along the wall the fingers reach 5 mm aside.
+  PartDefinition part = partWith({graspFromAbove("across"), graspFromAbove("along")});
+  part.grasps[1].T_object_tip = part.grasps[1].T_object_tip * AngleAxisd(M_PI / 2, Vector3d::UnitZ());
+  const GraspSelection selection = selectInBin({detectionAt({0, 0.13, 0.07})}, part);
+  ASSERT_EQ(selection.grasps.size(), 1u);
+  EXPECT_EQ(selection.grasps[0].grasp_id, "along");
+  ASSERT_EQ(selection.rejected.size(), 1u);
+  EXPECT_EQ(selection.rejected[0].grasp_id, "across");
+}
+
+TEST(GraspSelection, AWideOpeningCollidesWhereANarrowOneDoesNot)
+{
+  PartDefinition part = partWith({graspFromAbove("narrow"), graspFromAbove("wide")});
+  part.grasps[1].opening = 0.09;
+  const GraspSelection selection = selectInBin({detectionAt({0, 0.11, 0.07})}, part);
+  ASSERT_EQ(selection.grasps.size(), 1u);
+  EXPECT_EQ(selection.grasps[0].grasp_id, "narrow");
+}
+
+TEST(GraspSelection, FingersMustNotReachTheFloor)
+{
+  const PartDefinition part = partWith({graspFromAbove("top")});
+  EXPECT_EQ(selectInBin({detectionAt({0, 0, 0.0135})}, part).grasps.size(), 1u);
+  const GraspSelection low = selectInBin({detectionAt({0, 0, 0.0125})}, part);
+  ASSERT_EQ(low.rejected.size(), 1u);
+  EXPECT_EQ(low.rejected[0].rejection, GraspRejection::BinFloorCollision);
+  EXPECT_NE(low.rejected[0].reason.find("2.5 mm"), std::string::npos) << low.rejected[0].reason;
+}
+
+TEST(GraspSelection, TheWayInIsCheckedAndNotOnlyItsEnds)
+{
+  // Tilted by 60 degrees and from far away the gripper would come in through the wall: the pre-grasp is free outside of
+  // the bin and the grasp is free inside of it.
+  Bin bin = binBelowCamera();
+  bin.inner_size.z() = 0.3;
+  Gripper gripper = twoFingerGripper();
+  gripper.boxes = {{"needle", {0, 0, -0.01}, {0.002, 0.002, 0.02}, 0}};
+  PartDefinition part = partWith({graspFromAbove("side")});
+  part.grasps[0].approach = 0.3;
+  GraspParameters parameters;
+  parameters.max_tilt = 80 * DEGREE;
+  const Detection detection =
+      detectionAt({0, 0.1, 0.05}, Eigen::Quaterniond(AngleAxisd(-60 * DEGREE, Vector3d::UnitX())));
+  const GraspSelection selection = selectGrasps({detection}, {part}, gripper, &bin, parameters);
+  ASSERT_EQ(selection.rejected.size(), 1u);
+  const Vector3d start = bin.T_camera_bin.inverse() * selection.rejected[0].T_camera_pre_grasp.translation();
+  EXPECT_GT(start.y(), 0.15 + bin.wall_thickness + 0.02);  // beyond the wall
+  EXPECT_EQ(selection.rejected[0].rejection, GraspRejection::BinWallCollision);
+
+  // Over a low wall the same way is free.
+  bin.inner_size.z() = 0.06;
+  EXPECT_EQ(selectGrasps({detection}, {part}, gripper, &bin, parameters).grasps.size(), 1u);
+}
+
+TEST(GraspSelection, AnOpeningBeyondTheGripperIsRefused)
+{
+  PartDefinition part = partWith({graspFromAbove("fits"), graspFromAbove("too_wide")});
+  part.grasps[0].opening = 0.095;
+  part.grasps[1].opening = 0.096;
+  part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, Vector3d::UnitZ()));
+  const GraspSelection selection = selectInBin({detectionAt({0, 0, 0.08})}, part);
+  EXPECT_EQ(selection.grasps.size(), 2u);
+  ASSERT_EQ(selection.rejected.size(), 1u);  // once, although the part has two symmetric copies
+  EXPECT_EQ(selection.rejected[0].rejection, GraspRejection::OpeningTooSmall);
+  EXPECT_NE(selection.rejected[0].reason.find("96.0 mm"), std::string::npos) << selection.rejected[0].reason;
+}
+
+TEST(GraspSelection, ALowOrUnknownMatchingRateIsRefused)
+{
+  std::vector<Detection> detections(3, detectionAt({0, 0, 0.06}));
+  detections[0].matching_rate = 0.85;
+  detections[1].matching_rate = 0.849;
+  detections[2].matching_rate = std::numeric_limits<double>::quiet_NaN();
+  const GraspSelection selection = selectInBin(detections, partWith({graspFromAbove("top")}));
+  ASSERT_EQ(selection.grasps.size(), 1u);
+  EXPECT_EQ(selection.grasps[0].detection_index, 0u);
+  ASSERT_EQ(selection.rejected.size(), 2u);
+  for (const Grasp& grasp : selection.rejected)
+    EXPECT_EQ(grasp.rejection, GraspRejection::MatchingRateTooLow);
+  EXPECT_NE(selection.rejected[0].reason.find("84.9 %"), std::string::npos) << selection.rejected[0].reason;
+}
+
+TEST(GraspSelection, WithoutABinTiltAndRetreatFollowTheView)
+{
+  GraspParameters parameters;
+  parameters.max_tilt = 20 * DEGREE;
+  const Detection straight = detectionAt({0.3, 0, 0.05});  // where a wall would be
+  const Detection tilted = detectionAt({0, 0, 0.05}, Eigen::Quaterniond(AngleAxisd(25 * DEGREE, Vector3d::UnitY())));
+  const GraspSelection selection =
+      selectGrasps({straight, tilted}, {partWith({graspFromAbove("top")})}, twoFingerGripper(), nullptr, parameters);
+  ASSERT_EQ(selection.grasps.size(), 1u);
+  EXPECT_TRUE(std::isnan(selection.grasps[0].bin_clearance));
+  EXPECT_NEAR(
+      selection.grasps[0].T_camera_grasp.translation().z() - selection.grasps[0].T_camera_retreat.translation().z(),
+      0.1, 1e-9);
+  ASSERT_EQ(selection.rejected.size(), 1u);
+  EXPECT_EQ(selection.rejected[0].rejection, GraspRejection::TiltTooLarge);
+}
+
+TEST(GraspSelection, BetterGraspsComeFirst)
+{
+  const auto first = [](std::vector<Detection> detections, const PartDefinition& part) {
+    const GraspSelection selection = selectInBin(detections, part);
+    EXPECT_EQ(selection.grasps.size(), detections.size() * part.grasps.size());
+    EXPECT_GT(selection.grasps[0].quality, selection.grasps[1].quality);
+    return selection.grasps[0];
+  };
+  const PartDefinition one = partWith({graspFromAbove("top")});
+  Detection better = detectionAt({0.05, 0, 0.06});
+  better.score = 0.95;
+  EXPECT_EQ(first({detectionAt({0, 0, 0.06}), better}, one).detection_index, 1u);                        // score
+  EXPECT_EQ(first({detectionAt({0, 0, 0.06}), detectionAt({0, 0.05, 0.10})}, one).detection_index, 1u);  // height
+  EXPECT_EQ(first({detectionAt({0, 0, 0.1}, Eigen::Quaterniond(AngleAxisd(0.4, Vector3d::UnitX()))),
+                   detectionAt({0, 0, 0.1})},
+                  one)
+                .detection_index,
+            1u);                                                                                       // tilt
+  EXPECT_EQ(first({detectionAt({0, 0.11, 0.1}), detectionAt({0, 0, 0.1})}, one).detection_index, 1u);  // clearance
+  PartDefinition two = partWith({graspFromAbove("spare"), graspFromAbove("preferred")});
+  two.grasps[1].priority = 5;
+  EXPECT_EQ(first({detectionAt({0, 0, 0.06})}, two).grasp_id, "preferred");  // priority
+}
+
+TEST(GraspSelection, EqualGraspsKeepTheStatedOrder)
+{
+  PartDefinition part = partWith({graspFromAbove("a"), graspFromAbove("b")});
+  part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, Vector3d::UnitZ()));
+  const std::vector<Detection> detections(2, detectionAt({0.01, 0.02, 0.06}));
+  const GraspSelection selection = selectInBin(detections, part);
+  ASSERT_EQ(selection.grasps.size(), 8u);
+  for (std::size_t i = 0; i < 8; ++i)
+  {
+    EXPECT_EQ(selection.grasps[i].detection_index, i / 4);
+    EXPECT_EQ(selection.grasps[i].grasp_id, i / 2 % 2 ? "b" : "a");
+    EXPECT_EQ(selection.grasps[i].symmetry_variant, static_cast<int>(i % 2));
+  }
+}
+
+TEST(GraspSelection, OnlySoManyAreReturned)
+{
+  GraspParameters parameters;
+  parameters.max_grasps = 3;
+  const std::vector<Detection> detections(5, detectionAt({0, 0, 0.06}));
+  EXPECT_EQ(selectInBin(detections, partWith({graspFromAbove("top")}), parameters).grasps.size(), 3u);
+}
+
+TEST(GraspSelection, NothingKnownNothingOffered)
+{
+  EXPECT_TRUE(selectInBin({}, partWith({graspFromAbove("top")})).grasps.empty());
+  EXPECT_TRUE(selectInBin({detectionAt({0, 0, 0.06})}, partWith({})).grasps.empty());
+  Detection stranger = detectionAt({0, 0, 0.06});
+  stranger.part = "stranger";
+  const GraspSelection selection = selectInBin({stranger}, partWith({graspFromAbove("top")}));
+  EXPECT_TRUE(selection.grasps.empty());
+  EXPECT_TRUE(selection.rejected.empty());
+}
+
+TEST(GraspSelection, AGripperWithoutBoxesCannotBeChecked)
+{
+  Gripper gripper = twoFingerGripper();
+  gripper.boxes.clear();
+  const Bin bin = binBelowCamera();
+  const std::vector<Detection> detections = {detectionAt({0, 0, 0.06})};
+  const std::vector<PartDefinition> parts = {partWith({graspFromAbove("top")})};
+  EXPECT_THROW(selectGrasps(detections, parts, gripper, &bin, {}), ParameterError);
+  EXPECT_EQ(selectGrasps(detections, parts, gripper, nullptr, {}).grasps.size(), 1u);
+}
+
+TEST(GraspParameters, DefaultsLieWithinTheirRanges)
+{
+  GraspParameters parameters;
+  for (const ParameterEntry& entry : listParameters(visitor(parameters)))
+    EXPECT_NO_THROW(setParameter(visitor(parameters), entry.path, entry.value)) << entry.path;
+  EXPECT_THROW(setParameter(visitor(parameters), "max_tilt=200deg"), ParameterError);
+  setParameter(visitor(parameters), "max_tilt=30deg");
+  EXPECT_NEAR(parameters.max_tilt, 30 * DEGREE, 1e-9);
+}
+}  // namespace
+}  // namespace bin_picking
