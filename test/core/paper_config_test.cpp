@@ -100,6 +100,8 @@ TEST_P(PaperConfig, HoldsThePublishedConstants)
 }
 
 INSTANTIATE_TEST_SUITE_P(Objects, PaperConfig, testing::ValuesIn(TABLE),
-                         [](const testing::TestParamInfo<Published>& info) { return std::string(info.param.file); });
+                         [](const testing::TestParamInfo<Published>& object) {
+                           return std::string(object.param.file);
+                         });
 }  // namespace
 }  // namespace bin_picking
