@@ -110,14 +110,19 @@ public:
   DetectionResult detect(const pcl::PointCloud<pcl::PointXYZ>& cloud, const Request& request) const;
   DetectionResult detect(const DepthGrid& grid, const Request& request) const;
 
-  /// One part in an unorganized oriented point set (no camera grid, no segmentation): voting, clustering, ICP and matching
-  /// rate only. Best first. Used for whole scans and for the paper's public data sets.
-  DetectionResult match(const OrientedPoints& scene) const;
+  /// The (one) part in an unorganized oriented point set: no camera grid, no segmentation; voting, clustering, ICP and
+  /// matching rate only. Best first. For whole scans and for the paper's public data sets.
+  /// \param scene_is_part true: every scene point belongs to the part, so that all count in Equation 9; false: only those
+  ///   inside the part's bounding box at the pose
+  /// \throws ParameterError if the detector holds more than one model; CloudError Empty for no points
+  DetectionResult match(const OrientedPoints& scene, bool scene_is_part) const;
 
   const std::vector<std::shared_ptr<const TrainedModel>>& models() const { return models_; }
   const DetectorParameters& parameters() const { return parameters_; }
 
 private:
+  std::vector<std::size_t> requestedModels(const Request& request) const;
+
   std::vector<std::shared_ptr<const TrainedModel>> models_;
   DetectorParameters parameters_;
   Executor executor_;

@@ -15,14 +15,15 @@ class Executor;
 
 struct VotingParameters
 {
-  double reference_share = 0.2;      // of the scene samples
-  int min_references = 30;
-  double max_pair_distance = 1.0;    // of the diameter
-  double weight = 3;                 // W of Equation 8
-  double curvature_spread = 0.3;     // share of a curvature bin at its ends that also votes in the neighbour bin
-  int max_bucket = 0;                // 0: no limit
+  double reference_share = 1.0 / 15;
+  int min_references = 40;
+  double max_pair_distance = 1.0;
+  int weight = 1;
+  double curvature_spread = 0.3;
+  bool curvature_wildcard = true;
+  int max_bucket = 0;
   int peaks_per_reference = 2;
-  double min_peak_share = 0.8;       // of the highest peak
+  double min_peak_share = 0.7;
   bool sum_adjacent_angles = true;
 
   void visit(ParameterVisitor& v);
@@ -51,13 +52,15 @@ struct VotingResult
   bool partial = false;                ///< the deadline passed
 };
 
-/// Every n-th sample, evenly over the scene.
-std::vector<int> chooseReferences(std::size_t num_samples, const VotingParameters& parameters);
+/// Every n-th of `candidates`, so that about reference_share of them, but at least min_references, are drawn.
+std::vector<int> chooseReferences(const std::vector<int>& candidates, const VotingParameters& parameters);
 
 /// Sections 2.2.2 and 2.2.3. For each reference point: Equation 5 with every sample within the part's diameter, look-up,
 /// weighted votes (Equation 8) in the accumulator of model points x angle steps, and its peaks as poses (Equation 6).
-/// \param scene with curvature; NaN curvature votes in every curvature bin
-/// \param curvature_complete per point, 0: treat the curvature as unknown; empty: all are known
+/// The result does not depend on the number of threads.
+/// \param scene with curvature. Where it is NaN the point takes part in four dimensions only: it meets every curvature bin
+/// \param curvature_complete per point; 0: the neighbourhood was cut off, and with curvature_wildcard the curvature counts as
+///   unknown. Empty: all are complete
 VotingResult voteForPoses(const TrainedModel& model, const OrientedPoints& scene,
                           const std::vector<std::uint8_t>& curvature_complete, const std::vector<int>& references,
                           const VotingParameters& parameters, const Deadline& deadline, const Executor& executor);

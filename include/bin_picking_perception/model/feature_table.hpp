@@ -90,12 +90,13 @@ public:
 
 private:
   friend struct ModelFileAccess;
+  /// Fibonacci hashing; at least one slot stays empty, so that every search ends.
   std::size_t home(std::uint32_t key) const { return (key * 2654435769u) >> shift_; }
 
   FeatureQuantizer quantizer_;
-  std::vector<Slot> slots_;
+  std::vector<Slot> slots_ = std::vector<Slot>(2);  ///< a power of two, at most half full
   std::vector<TableEntry> entries_;
   std::size_t num_keys_ = 0;
-  unsigned shift_ = 31;
+  unsigned shift_ = 31;  ///< 32 - log2(number of slots)
 };
 }  // namespace bin_picking

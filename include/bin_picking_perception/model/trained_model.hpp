@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bin_picking_perception/common/oriented_points.hpp"
+#include "bin_picking_perception/model/curvature_classes.hpp"
 #include "bin_picking_perception/model/feature_table.hpp"
 #include "bin_picking_perception/model/mesh.hpp"
 #include "bin_picking_perception/model/part.hpp"
@@ -23,15 +24,6 @@ struct ViewTemplate
   float area = 0;                                        ///< of the silhouette, square metres
   float contour = 0;                                     ///< length of the silhouette's contours (holes too), metres
   std::vector<std::uint32_t> visible;                    ///< indices into TrainedModel::surface
-};
-
-/// Low- and high-curvature ranges of Equation 8, in the unit of the measure, on the absolute value.
-struct CurvatureClasses
-{
-  double low_max = 0;   ///< |q| <= low_max is "low"
-  double high_min = 0;  ///< |q| > high_min is "high"
-
-  int classOf(float q) const;  ///< -1 low, +1 high, 0 neither or NaN
 };
 
 /// Everything that the online phase needs to know about a part. Immutable; share it between threads.

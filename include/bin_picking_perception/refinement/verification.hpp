@@ -13,15 +13,18 @@ namespace bin_picking
 {
 struct VerificationParameters
 {
-  bool enabled = true;                // false: only the matching rate decides (paper)
-  double match_distance = 0.005;      // Equation 9: distance threshold
+  bool enabled = true;                // false: only the matching rate decides, as in the paper
+  double match_distance = 0.005;
   double min_matching_rate = 0.5;
-  double depth_tolerance = 0.4;       // of the leaf, added to 3 sigma of the noise
-  double max_normal_angle = 0.7;      // rad
-  double min_visible_fraction = 0.3;
-  double min_inlier_share = 0.55;     // explained / (explained + contradicted)
-  double max_violation_share = 0.25;  // free space that was seen through the part
-  double overlap = 0.35;              // share of common pixels from which two detections are one
+  double depth_tolerance = 0.35;
+  double noise_tolerance = 2.5;
+  double max_normal_angle = 0.7;
+  double min_visible_fraction = 0.35;
+  double min_inlier_share = 0.6;
+  double max_violation_share = 0.2;
+  double unmeasured_weight = 0.3;
+  double overlap = 0.35;
+  int max_refined = 80;
 
   void visit(ParameterVisitor& v);
 };
@@ -31,19 +34,35 @@ struct PoseEvidence
 {
   int facing = 0;      ///< model points that would be seen if nothing were in front
   int explained = 0;   ///< measured there, normal agrees
-  int misfit = 0;      ///< measured near there, normal disagrees
+  int misfit = 0;      ///< measured near there, but off the surface or with another normal
   int occluded = 0;    ///< something nearer was measured: neither for nor against
   int violated = 0;    ///< something farther was measured: the part cannot be there
-  int unmeasured = 0;  ///< no data: neither for nor against
-  double rms = 0;      ///< depth residual of the explained points, metres
-  std::vector<int> pixels;  ///< of the explained points, sorted, unique
+  int unmeasured = 0;  ///< no data (or outside of the picture)
+  int matched = 0;     ///< measured, not occluded, and within the distance of Equation 9
+  double rms = 0;      ///< point-to-plane residual of the explained points, metres
+  std::vector<int> pixels;  ///< of the explained points, ascending, unique
+
+  /// Explained among all that speak for or against the pose, [0, 1].
+  double inlierShare(double unmeasured_weight) const;
+  double visibleFraction() const { return facing > 0 ? static_cast<double>(explained) / facing : 0; }
+  double violationShare() const;
+  /// Equation 9 with the measured, not occluded pixels under the part as "object points in the scene".
+  double matchingRate() const;
 };
 
-PoseEvidence gatherEvidence(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
-                            const std::vector<Eigen::Vector3f>& normals, double depth_tolerance,
+/// The view of the part that is nearest to what the camera sees at this pose.
+const ViewTemplate& nearestView(const TrainedModel& model, const Pose& T_camera_object);
+
+/// Every step-th surface point of the nearest view so that about max_points remain.
+OrientedPoints facingPoints(const TrainedModel& model, const Pose& T_camera_object, std::size_t max_points);
+
+/// \param facing points of the part that face the camera (facingPoints)
+/// \param tolerance of the distance to the surface, metres
+PoseEvidence gatherEvidence(const OrientedPoints& facing, const Pose& T_camera_object, const DepthGrid& grid,
+                            const std::vector<Eigen::Vector3f>& normals, double tolerance,
                             const VerificationParameters& parameters);
 
-/// Equation 9: the share of `object_points` that have a model point within `distance`.
+/// Equation 9: the share of `object_points` that have a model point within `distance`. 0 for no points.
 double matchingRate(const OrientedPoints& model_surface, const Pose& T_camera_object,
                     const std::vector<Eigen::Vector3f>& object_points, double distance);
 }  // namespace bin_picking

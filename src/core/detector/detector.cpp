@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_picking_perception/detector.hpp"
+
+#include <algorithm>
+
+#include "bin_picking_perception/common/error.hpp"
+#include "stages.hpp"
+
+namespace bin_picking
+{
+Detector::Detector(std::vector<std::shared_ptr<const TrainedModel>> models, DetectorParameters parameters)
+  : models_(std::move(models)), parameters_(std::move(parameters)), executor_(parameters_.num_threads)
+{
+  if (models_.empty())
+    throw ParameterError("a detector needs at least one trained model, but none was given");
+  // A value set in code may lie outside of its range: reading each back through the visitor checks it.
+  DetectorParameters copy = parameters_;
+  for (const auto& entry : listParameters(visitor(copy)))
+    setParameter(visitor(copy), entry.path, entry.value);
+}
+
+std::vector<std::size_t> Detector::requestedModels(const Request& request) const
+{
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < models_.size(); ++i)
+    if (request.parts.empty() || std::count(request.parts.begin(), request.parts.end(), models_[i]->name) > 0)
+      indices.push_back(i);
+  std::vector<std::string> known;
+  for (const auto& model : models_)
+    known.push_back(model->name);
+  for (const auto& part : request.parts)
+    if (std::count(known.begin(), known.end(), part) == 0)
+    {
+      const std::string guess = didYouMean(part, known);
+      throw ParameterError("the part '" + part + "' is not loaded" + (guess.empty() ? "" : "; did you mean '" + guess + "'?"));
+    }
+  return indices;
+}
+
+DetectionResult Detector::detect(const pcl::PointCloud<pcl::PointXYZ>& cloud, const Request& request) const
+{
+  const auto start = std::chrono::steady_clock::now();
+  const DepthGrid grid = makeGrid(cloud, parameters_.input);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  DetectionResult result = detect(grid, request);
+  result.timing.insert(result.timing.begin(), {"input", seconds});
+  result.total_seconds += seconds;
+  return result;
+}
+
+namespace
+{
+SegmentationView viewOf(Segmentation&& segmentation, const std::vector<CandidateTarget>& candidates)
+{
+  SegmentationView view;
+  view.width = segmentation.width;
+  view.height = segmentation.height;
+  view.gray = std::move(segmentation.gray);
+  view.labels = std::move(segmentation.labels);
+  view.candidates.assign(view.labels.size(), 0);
+  for (std::size_t i = 0; i < view.labels.size(); ++i)
+    for (const auto& candidate : candidates)
+      if (candidate.label == view.labels[i])
+        view.candidates[i] = candidate.label;
+  return view;
+}
+
+void summarize(DetectionResult& result)
+{
+  const std::string late = result.partial ? "; the deadline passed, so this is what was ready" : "";
+  result.code = result.detections.empty() ? DetectionCode::NoMatch : DetectionCode::Ok;
+  if (result.detections.empty())
+    result.message = "no part was recognised; the best of " + std::to_string(result.rejected.size()) +
+                     " rejected poses: " + (result.rejected.empty() ? "none" : result.rejected.front().rejection) + late;
+  else
+    result.message = std::to_string(result.detections.size()) + " part(s) found, the best with a score of " +
+                     std::to_string(result.detections.front().score).substr(0, 4) + late;
+}
+}  // namespace
+
+DetectionResult Detector::detect(const DepthGrid& grid, const Request& request) const
+{
+  const std::vector<std::size_t> indices = requestedModels(request);
+  const Deadline deadline(request.deadline > 0 ? request.deadline : parameters_.deadline);
+  const Bin* bin = request.bin ? &*request.bin : nullptr;
+  DetectionResult result;
+  StageClock clock(result);
+
+  DepthGrid region = grid;
+  cropToRegion(region, parameters_.input, bin);
+  const auto measured = std::count_if(region.z.begin(), region.z.end(), [](float z) { return !std::isnan(z); });
+  clock.count("points", static_cast<double>(measured));
+  clock.lap("region");
+  if (measured < parameters_.input.empty_bin_points)
+  {
+    result.code = DetectionCode::BinEmpty;
+    result.message = "the bin is empty: " + std::to_string(measured) + " points lie inside the limits, fewer than " +
+                     std::to_string(parameters_.input.empty_bin_points) + " (input/empty_bin_points)";
+    clock.finish();
+    return result;
+  }
+
+  std::vector<Assessed> assessed;
+  for (const std::size_t index : indices)
+  {
+    const TrainedModel& model = *models_[index];
+    const PreparedScene scene = prepareScene(region, model, parameters_, executor_, clock);
+    Segmentation segmentation = segmentScene(scene.grid, parameters_.segmentation, bin);
+    clock.count("segments", static_cast<double>(segmentation.segments.size()));
+    const auto candidates = selectCandidates(segmentation, scene.grid, model, parameters_.segmentation);
+    clock.count("candidates", static_cast<double>(candidates.size()));
+    const auto search = planSearch(scene, segmentation, candidates, parameters_);
+    clock.lap("segmentation");
+    const auto poses = searchPoses(search, model, parameters_, deadline, executor_, clock, result.partial);
+    auto found = refineAndVerify(poses, scene, model, parameters_, deadline, executor_, clock, result.partial);
+    for (auto& pose : found)
+      pose.detection.model_index = index;
+    std::move(found.begin(), found.end(), std::back_inserter(assessed));
+    if (request.keep_segmentation)
+      result.segmentation = viewOf(std::move(segmentation), candidates);
+  }
+  selectDetections(std::move(assessed), parameters_, result);
+  clock.lap("selection");
+  summarize(result);
+  clock.finish();
+  return result;
+}
+}  // namespace bin_picking

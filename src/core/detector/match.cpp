@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <algorithm>
+
+#include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/scene/surface_resampling.hpp"
+#include "stages.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+/// Scene points inside the part's bounding box, grown by `margin`, at a pose.
+std::vector<Eigen::Vector3f> pointsInBox(const OrientedPoints& scene, const TrainedModel& model, const Pose& T_camera_object,
+                                         double margin)
+{
+  const Eigen::Isometry3f T_object_camera = T_camera_object.inverse().cast<float>();
+  const Eigen::Vector3f center = model.center.cast<float>();
+  const Eigen::Vector3f half = (model.size / 2).cast<float>() + Eigen::Vector3f::Constant(static_cast<float>(margin));
+  std::vector<Eigen::Vector3f> inside;
+  for (const auto& point : scene.points)
+    if (((T_object_camera * point - center).cwiseAbs() - half).maxCoeff() <= 0)
+      inside.push_back(point);
+  return inside;
+}
+
+Detection assess(const PoseCluster& cluster, const OrientedPoints& scene, const TrainedModel& model,
+                 const DetectorParameters& parameters, bool scene_is_part)
+{
+  const IcpParameters& icp = parameters.icp;
+  const double distance = parameters.verification.match_distance;
+  Detection detection;
+  detection.part = model.name;
+  detection.votes = cluster.votes;
+  detection.T_camera_object = cluster.T_camera_object;
+  if (icp.method != IcpMethod::None)
+  {
+    const IcpResult refined =
+        icpPointToPoint(model.surface, scene, cluster.T_camera_object, icp.max_distance * model.parameters.leaf, icp);
+    detection.T_camera_object = refined.T_camera_object;
+    detection.rms = refined.rms;
+  }
+  const auto object_points =
+      scene_is_part ? scene.points : pointsInBox(scene, model, detection.T_camera_object, distance);
+  detection.matching_rate = matchingRate(model.surface, detection.T_camera_object, object_points, distance);
+  // Without a camera nothing says what should be seen: half of the part, as in a scan from one side, counts as all.
+  const double matched = detection.matching_rate * static_cast<double>(object_points.size());
+  detection.visible_fraction = std::min(1.0, matched / (0.5 * static_cast<double>(model.points.size())));
+  detection.score = detection.matching_rate * std::sqrt(detection.visible_fraction);
+  if (detection.matching_rate < parameters.verification.min_matching_rate)
+    detection.rejection = "matching_rate is " + std::to_string(detection.matching_rate).substr(0, 5) + ", but must be at least " +
+                          std::to_string(parameters.verification.min_matching_rate).substr(0, 5);
+  return detection;
+}
+}  // namespace
+
+DetectionResult Detector::match(const OrientedPoints& scene, bool scene_is_part) const
+{
+  if (models_.size() != 1)
+    throw ParameterError("matching a point set takes one model, but the detector holds " + std::to_string(models_.size()));
+  if (scene.empty())
+    throw CloudError(CloudFault::Empty, "the point set to be searched holds no points");
+  const TrainedModel& model = *models_.front();
+  const TrainingParameters& trained = model.parameters;
+  const Deadline deadline(parameters_.deadline);
+  DetectionResult result;
+  StageClock clock(result);
+
+  SearchRegion region;
+  static_cast<OrientedPoints&>(region.samples) = resampleSurface(
+      scene, {trained.leaf, trained.normal_radius, trained.curvature_measure, trained.curvature_radius}, executor_);
+  region.references.resize(region.samples.size());
+  for (std::size_t i = 0; i < region.references.size(); ++i)
+    region.references[i] = static_cast<int>(i);
+  region.references = chooseReferences(region.references, parameters_.voting);
+  region.keep_clusters = parameters_.clustering.max_clusters;
+  clock.count("samples", static_cast<double>(region.samples.size()));
+  clock.lap("sampling");
+
+  std::vector<SearchRegion> regions;
+  regions.push_back(std::move(region));
+  const auto poses = searchPoses(regions, model, parameters_, deadline, executor_, clock, result.partial);
+  constexpr std::size_t MAX_REFINED = 10;
+  std::vector<Detection> detections(std::min(poses.size(), MAX_REFINED));
+  executor_.forEach(detections.size(), [&](std::size_t i) {
+    detections[i] = assess({poses[i].T_camera_object, poses[i].votes, 0}, regions.front().samples, model, parameters_, scene_is_part);
+  });
+  clock.lap("refinement");
+  std::stable_sort(detections.begin(), detections.end(),
+                   [](const Detection& a, const Detection& b) { return a.score > b.score; });
+  for (auto& detection : detections)
+    (detection.rejection.empty() ? result.detections : result.rejected).push_back(std::move(detection));
+  result.code = result.detections.empty() ? DetectionCode::NoMatch : DetectionCode::Ok;
+  result.message = std::to_string(result.detections.size()) + " pose(s) with a sufficient matching rate";
+  clock.finish();
+  return result;
+}
+}  // namespace bin_picking

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <algorithm>
+#include <cmath>
+
+#include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/refinement/icp.hpp"
+#include "stages.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+constexpr std::size_t COARSE_POINTS = 250;
+constexpr std::size_t FINE_POINTS = 1500;
+
+double score(const PoseEvidence& evidence, const VerificationParameters& parameters)
+{
+  // The share says how right the pose is, the visible fraction how sure that is; neither alone ranks well.
+  return evidence.inlierShare(parameters.unmeasured_weight) * std::sqrt(evidence.visibleFraction());
+}
+
+double tolerance(const PreparedScene& scene, const TrainedModel& model, const VerificationParameters& parameters)
+{
+  return parameters.depth_tolerance * model.parameters.leaf + parameters.noise_tolerance * scene.noise;
+}
+
+/// The poses that a quick look at the unrefined evidence puts first.
+std::vector<Hypothetical> mostPromising(const std::vector<Hypothetical>& poses, const PreparedScene& scene,
+                                        const TrainedModel& model, const VerificationParameters& parameters,
+                                        const Executor& executor)
+{
+  const auto limit = static_cast<std::size_t>(parameters.max_refined);
+  if (!parameters.enabled || poses.size() <= limit)
+    return poses;
+  constexpr double UNREFINED = 2;  // poses from votes are off by about a leaf
+  std::vector<double> scores(poses.size());
+  executor.forEach(poses.size(), [&](std::size_t i) {
+    const OrientedPoints facing = facingPoints(model, poses[i].T_camera_object, COARSE_POINTS);
+    scores[i] = score(gatherEvidence(facing, poses[i].T_camera_object, scene.grid, scene.normals,
+                                     UNREFINED * tolerance(scene, model, parameters), parameters),
+                      parameters);
+  });
+  std::vector<std::size_t> order(poses.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
+  std::vector<Hypothetical> best;
+  for (std::size_t i = 0; i < limit; ++i)
+    best.push_back(poses[order[i]]);
+  return best;
+}
+
+IcpResult refine(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model, const IcpParameters& icp)
+{
+  const double leaf = model.parameters.leaf;
+  switch (icp.method)
+  {
+    case IcpMethod::PointToPoint:
+      return icpPointToPoint(model.surface, pose.region->samples, pose.T_camera_object, icp.max_distance * leaf, icp);
+    case IcpMethod::Projective:
+      return icpProjective(facingPoints(model, pose.T_camera_object, FINE_POINTS / 2), scene.grid, scene.normals,
+                           pose.T_camera_object, leaf, icp);
+    case IcpMethod::None:
+      break;
+  }
+  IcpResult unchanged;
+  unchanged.T_camera_object = pose.T_camera_object;
+  return unchanged;
+}
+
+void judge(Detection& detection, const PoseEvidence& evidence, const VerificationParameters& parameters)
+{
+  detection.criteria.push_back({"matching_rate", detection.matching_rate, parameters.min_matching_rate, false});
+  if (parameters.enabled)
+  {
+    detection.criteria.push_back(
+        {"inlier_share", evidence.inlierShare(parameters.unmeasured_weight), parameters.min_inlier_share, false});
+    detection.criteria.push_back({"visible_fraction", detection.visible_fraction, parameters.min_visible_fraction, false});
+    detection.criteria.push_back({"violation_share", evidence.violationShare(), parameters.max_violation_share, true});
+  }
+  for (const auto& criterion : detection.criteria)
+    if (!criterion.passed() && detection.rejection.empty())
+      detection.rejection = criterion.name + " is " + std::to_string(criterion.value).substr(0, 5) + ", but must be at " +
+                            (criterion.upper_limit ? "most " : "least ") + std::to_string(criterion.required).substr(0, 5);
+}
+
+Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
+                const DetectorParameters& parameters)
+{
+  const VerificationParameters& verification = parameters.verification;
+  const IcpResult refined = refine(pose, scene, model, parameters.icp);
+  Assessed assessed;
+  Detection& detection = assessed.detection;
+  detection.part = model.name;
+  detection.T_camera_object = refined.T_camera_object;
+  detection.votes = pose.votes;
+  PoseEvidence evidence = gatherEvidence(facingPoints(model, refined.T_camera_object, FINE_POINTS), refined.T_camera_object,
+                                         scene.grid, scene.normals, tolerance(scene, model, verification), verification);
+  detection.visible_fraction = evidence.visibleFraction();
+  detection.rms = evidence.rms;
+  detection.matching_rate = pose.region->is_candidate ?
+                                matchingRate(model.surface, refined.T_camera_object, pose.region->samples.points,
+                                             verification.match_distance) :
+                                evidence.matchingRate();
+  detection.score = verification.enabled ? score(evidence, verification) : detection.matching_rate;
+  judge(detection, evidence, verification);
+  assessed.pixels = std::move(evidence.pixels);
+  return assessed;
+}
+}  // namespace
+
+std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, const PreparedScene& scene,
+                                      const TrainedModel& model, const DetectorParameters& parameters,
+                                      const Deadline& deadline, const Executor& executor, StageClock& clock, bool& partial)
+{
+  const auto best = mostPromising(poses, scene, model, parameters.verification, executor);
+  clock.lap("ranking");
+  std::vector<Assessed> assessed(best.size());
+  std::vector<std::uint8_t> skipped(best.size(), 0);
+  executor.forEach(best.size(), [&](std::size_t i) {
+    skipped[i] = deadline.passed();
+    if (!skipped[i])
+      assessed[i] = assess(best[i], scene, model, parameters);
+  });
+  std::vector<Assessed> ready;
+  for (std::size_t i = 0; i < best.size(); ++i)
+    if (!skipped[i])
+      ready.push_back(std::move(assessed[i]));
+  partial = partial || ready.size() < best.size();
+  clock.count("refined", static_cast<double>(ready.size()));
+  clock.lap("refinement");
+  return ready;
+}
+
+void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& parameters, DetectionResult& result)
+{
+  std::stable_sort(assessed.begin(), assessed.end(), [](const Assessed& a, const Assessed& b) {
+    return a.detection.score > b.detection.score;
+  });
+  std::vector<int> explained;  // by accepted detections, ascending
+  for (auto& candidate : assessed)
+  {
+    Detection& detection = candidate.detection;
+    std::vector<int> shared;
+    std::set_intersection(candidate.pixels.begin(), candidate.pixels.end(), explained.begin(), explained.end(),
+                          std::back_inserter(shared));
+    const double overlap = static_cast<double>(shared.size()) / std::max<double>(1, static_cast<double>(candidate.pixels.size()));
+    if (detection.rejection.empty() && overlap > parameters.verification.overlap)
+      detection.rejection = "a better detection explains " + std::to_string(100 * overlap).substr(0, 4) + " % of its pixels";
+    if (detection.rejection.empty() && static_cast<int>(result.detections.size()) >= parameters.max_detections)
+      detection.rejection = "max_detections better ones were found";
+    if (!detection.rejection.empty())
+    {
+      if (static_cast<int>(result.rejected.size()) < parameters.max_rejected)
+        result.rejected.push_back(std::move(detection));
+      continue;
+    }
+    std::vector<int> merged;
+    std::set_union(explained.begin(), explained.end(), candidate.pixels.begin(), candidate.pixels.end(), std::back_inserter(merged));
+    explained = std::move(merged);
+    result.detections.push_back(std::move(detection));
+  }
+}
+}  // namespace bin_picking

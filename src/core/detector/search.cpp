@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <algorithm>
+#include <set>
+
+#include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/scene/surface_resampling.hpp"
+#include "stages.hpp"
+
+namespace bin_picking
+{
+PreparedScene prepareScene(const DepthGrid& cropped, const TrainedModel& model, const DetectorParameters& parameters,
+                           const Executor& executor, StageClock& clock)
+{
+  const TrainingParameters& trained = model.parameters;
+  PreparedScene scene;
+  scene.grid = reduceGrid(cropped, reductionFactor(cropped, trained.leaf, parameters.preprocessing));
+  removeOutliers(scene.grid, parameters.preprocessing);
+  scene.noise = estimateDepthNoise(scene.grid);
+  clock.lap("outliers");
+  scene.normals = estimateGridNormals(scene.grid, trained.normal_radius, executor);
+  clock.lap("normals");
+  scene.samples = sampleScene(scene.grid, scene.normals, trained.leaf, parameters.preprocessing);
+  clock.count("samples", static_cast<double>(scene.samples.size()));
+  clock.lap("sampling");
+  if (model.table.quantizer().curvature_bins > 1)
+    estimateGridCurvature(scene.samples, scene.grid, scene.normals, trained.curvature_measure, trained.curvature_radius,
+                          OPPOSITE_WALL_ANGLE, executor);
+  clock.lap("curvature");
+  return scene;
+}
+
+namespace
+{
+SceneSamples selectSamples(const SceneSamples& samples, const std::vector<int>& indices)
+{
+  SceneSamples selected;
+  static_cast<OrientedPoints&>(selected) = select(samples, indices);
+  for (const int i : indices)
+  {
+    const auto k = static_cast<std::size_t>(i);
+    selected.pixel.push_back(samples.pixel[k]);
+    if (!samples.curvature_complete.empty())
+      selected.curvature_complete.push_back(samples.curvature_complete[k]);
+  }
+  return selected;
+}
+
+/// Sample indices per segment label.
+std::vector<std::vector<int>> samplesByLabel(const SceneSamples& samples, const Segmentation& segmentation)
+{
+  int last = 0;
+  for (const auto& segment : segmentation.segments)
+    last = std::max(last, segment.label);
+  std::vector<std::vector<int>> members(static_cast<std::size_t>(last) + 1);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+  {
+    const std::int32_t label = segmentation.labels[static_cast<std::size_t>(samples.pixel[i])];
+    if (label >= 0 && label <= last)
+      members[static_cast<std::size_t>(label)].push_back(static_cast<int>(i));
+  }
+  return members;
+}
+
+std::vector<int> allIndices(std::size_t count)
+{
+  std::vector<int> indices(count);
+  for (std::size_t i = 0; i < count; ++i)
+    indices[i] = static_cast<int>(i);
+  return indices;
+}
+}  // namespace
+
+std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentation& segmentation,
+                                     const std::vector<CandidateTarget>& candidates, const DetectorParameters& parameters)
+{
+  std::vector<SearchRegion> regions;
+  const auto members = samplesByLabel(scene.samples, segmentation);
+  if (parameters.segmentation.veto)
+  {
+    for (const auto& candidate : candidates)
+    {
+      SearchRegion region;
+      region.samples = selectSamples(scene.samples, members[static_cast<std::size_t>(candidate.label)]);
+      region.references = chooseReferences(allIndices(region.samples.size()), parameters.voting);
+      region.keep_clusters = 1;  // one candidate target is one part
+      region.is_candidate = true;
+      regions.push_back(std::move(region));
+    }
+    return regions;
+  }
+  // Everything may vote; candidate targets get references of their own on top, so that the parts that lie free are seen well.
+  SearchRegion region;
+  const std::vector<int> everything = chooseReferences(allIndices(scene.samples.size()), parameters.voting);
+  std::set<int> references(everything.begin(), everything.end());
+  for (const auto& candidate : candidates)
+  {
+    const auto own = chooseReferences(members[static_cast<std::size_t>(candidate.label)], parameters.voting);
+    references.insert(own.begin(), own.end());
+  }
+  region.samples = scene.samples;
+  region.references.assign(references.begin(), references.end());
+  region.keep_clusters = parameters.clustering.max_clusters;
+  regions.push_back(std::move(region));
+  return regions;
+}
+
+std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, const TrainedModel& model,
+                                      const DetectorParameters& parameters, const Deadline& deadline, const Executor& executor,
+                                      StageClock& clock, bool& partial)
+{
+  std::vector<Hypothetical> poses;
+  for (const auto& region : regions)
+  {
+    const VotingResult votes = voteForPoses(model, region.samples, region.samples.curvature_complete, region.references,
+                                            parameters.voting, deadline, executor);
+    partial = partial || votes.partial;
+    clock.count("references", static_cast<double>(votes.statistics.references));
+    clock.count("pairs", static_cast<double>(votes.statistics.pairs));
+    clock.count("votes", static_cast<double>(votes.statistics.votes));
+    clock.count("hypotheses", static_cast<double>(votes.hypotheses.size()));
+    clock.lap("voting");
+    const auto clusters = clusterPoses(votes.hypotheses, model, parameters.clustering);
+    clock.count("clusters", static_cast<double>(clusters.size()));
+    for (std::size_t i = 0; i < clusters.size() && static_cast<int>(i) < region.keep_clusters; ++i)
+      poses.push_back({clusters[i].T_camera_object, clusters[i].votes, &region});
+    clock.lap("clustering");
+  }
+  return poses;
+}
+}  // namespace bin_picking

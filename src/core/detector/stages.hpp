@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <vector>
+
+#include "bin_picking_perception/common/deadline.hpp"
+#include "bin_picking_perception/detector.hpp"
+#include "bin_picking_perception/matching/clustering.hpp"
+#include "bin_picking_perception/refinement/verification.hpp"
+#include "stage_clock.hpp"
+
+namespace bin_picking
+{
+/// The scene as one model sees it: at its leaf, with its radii.
+struct PreparedScene
+{
+  DepthGrid grid;                        ///< working grid
+  std::vector<Eigen::Vector3f> normals;  ///< per pixel of the working grid
+  double noise = 0;                      ///< of the depth, metres
+  SceneSamples samples;
+};
+
+/// Where poses are searched: samples that take part, and those of them that vote. One per candidate target in the `paper`
+/// preset; one for everything where segments are only a hint.
+struct SearchRegion
+{
+  SceneSamples samples;
+  std::vector<int> references;  ///< into samples
+  int keep_clusters = 0;
+  bool is_candidate = false;    ///< the samples are one candidate target: the "object points" of Equation 9
+};
+
+/// A cluster on its way to a detection.
+struct Hypothetical
+{
+  Pose T_camera_object = Pose::Identity();
+  double votes = 0;
+  const SearchRegion* region = nullptr;
+};
+
+PreparedScene prepareScene(const DepthGrid& cropped, const TrainedModel& model, const DetectorParameters& parameters,
+                           const Executor& executor, StageClock& clock);
+
+std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentation& segmentation,
+                                     const std::vector<CandidateTarget>& candidates, const DetectorParameters& parameters);
+
+/// Voting and clustering in every region. \param partial set if the deadline passed
+std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, const TrainedModel& model,
+                                      const DetectorParameters& parameters, const Deadline& deadline, const Executor& executor,
+                                      StageClock& clock, bool& partial);
+
+/// A refined pose with the pixels that it explains.
+struct Assessed
+{
+  Detection detection;
+  std::vector<int> pixels;
+};
+
+/// The most promising poses, refined by ICP and tested. Order: as given.
+std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, const PreparedScene& scene,
+                                      const TrainedModel& model, const DetectorParameters& parameters,
+                                      const Deadline& deadline, const Executor& executor, StageClock& clock, bool& partial);
+
+/// Sorts by score; rejects what failed a criterion and what explains the same pixels as better ones.
+void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& parameters, DetectionResult& result);
+}  // namespace bin_picking

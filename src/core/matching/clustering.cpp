@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_picking_perception/matching/clustering.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <tuple>
+
+namespace bin_picking
+{
+void ClusteringParameters::visit(ParameterVisitor& v)
+{
+  v.field({"distance", "", "poses nearer than this share of the diameter (at the part's centre) may be one", 0.001, 1}, distance);
+  v.field({"angle", "rad", "poses turned by less than this may be one", 0.01, 3.2}, angle);
+  v.field({"max_clusters", "", "strongest clusters that are looked at further; more find more hidden parts and cost time", 1, 100000},
+          max_clusters);
+}
+
+namespace
+{
+struct Cluster
+{
+  Pose leader;
+  Eigen::Vector3d center;  ///< of the part at the leader's pose
+  std::vector<Pose> poses;
+  std::vector<double> weights;
+  double votes = 0;
+};
+
+double rotationAngle(const Pose& a, const Pose& b)
+{
+  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
+}
+
+/// Strongest first, in an order that no two hypotheses share.
+void sortByStrength(std::vector<Hypothesis>& hypotheses)
+{
+  std::sort(hypotheses.begin(), hypotheses.end(), [](const Hypothesis& a, const Hypothesis& b) {
+    return std::make_tuple(-a.votes, a.reference, a.model_point) < std::make_tuple(-b.votes, b.reference, b.model_point);
+  });
+}
+
+Cluster* findCluster(std::vector<Cluster>& clusters, const Pose& pose, const Eigen::Vector3d& center, double distance,
+                     double angle, const Symmetry& symmetry, Pose& equivalent)
+{
+  for (auto& cluster : clusters)
+  {
+    if ((cluster.center - center).squaredNorm() > distance * distance)
+      continue;
+    equivalent = symmetry.trivial() ? pose : nearestEquivalent(pose, cluster.leader, symmetry);
+    if (rotationAngle(cluster.leader, equivalent) < angle)
+      return &cluster;
+  }
+  return nullptr;
+}
+}  // namespace
+
+Pose averagePoses(const std::vector<Pose>& poses, const std::vector<double>& weights, const Eigen::Vector3d& center)
+{
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Matrix4d outer = Eigen::Matrix4d::Zero();
+  double sum = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+  {
+    const Eigen::Vector4d q = Eigen::Quaterniond(poses[i].linear()).coeffs();
+    position += weights[i] * (poses[i] * center);
+    outer += weights[i] * q * q.transpose();
+    sum += weights[i];
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(outer);
+  const Eigen::Vector4d q = solver.eigenvectors().col(3);
+  Pose mean = Pose::Identity();
+  mean.linear() = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
+  mean.translation() = position / sum - mean.linear() * center;
+  return mean;
+}
+
+std::vector<PoseCluster> clusterPoses(std::vector<Hypothesis> hypotheses, const TrainedModel& model,
+                                      const ClusteringParameters& parameters)
+{
+  sortByStrength(hypotheses);
+  const double distance = parameters.distance * model.diameter;
+  std::vector<Cluster> clusters;
+  for (const auto& hypothesis : hypotheses)
+  {
+    const Pose& pose = hypothesis.T_camera_object;
+    const Eigen::Vector3d center = pose * model.center;
+    Pose equivalent = pose;
+    Cluster* cluster = findCluster(clusters, pose, center, distance, parameters.angle, model.symmetry, equivalent);
+    if (cluster == nullptr)
+    {
+      clusters.push_back({pose, center, {}, {}, 0});
+      cluster = &clusters.back();
+      equivalent = pose;
+    }
+    cluster->poses.push_back(equivalent);
+    cluster->weights.push_back(hypothesis.votes);
+    cluster->votes += hypothesis.votes;
+  }
+  std::stable_sort(clusters.begin(), clusters.end(), [](const Cluster& a, const Cluster& b) { return a.votes > b.votes; });
+
+  const std::size_t kept = std::min(clusters.size(), static_cast<std::size_t>(parameters.max_clusters));
+  std::vector<PoseCluster> result;
+  result.reserve(kept);
+  for (std::size_t i = 0; i < kept; ++i)
+    result.push_back({averagePoses(clusters[i].poses, clusters[i].weights, model.center), clusters[i].votes,
+                      static_cast<int>(clusters[i].poses.size())});
+  return result;
+}
+}  // namespace bin_picking

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <algorithm>
+#include <cmath>
+
+#include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/kd_tree.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/model/trained_model.hpp"
+#include "bin_picking_perception/model/view_templates.hpp"
+#include "bin_picking_perception/scene/surface_resampling.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+constexpr double AUTOMATIC_LEAF_SHARE = 0.04;  // of the diameter
+constexpr double MIN_SEEN_SHARE = 0.02;        // of the views; what is seen from fewer is inside the part
+constexpr std::size_t MIN_MODEL_POINTS = 30;
+
+/// Replaces every "automatic" length by its value for a part of this diameter.
+void resolve(TrainingParameters& p, double diameter)
+{
+  const auto automatic = [](double& value, double derived) { value = value > 0 ? value : derived; };
+  automatic(p.leaf, AUTOMATIC_LEAF_SHARE * diameter);
+  automatic(p.surface_spacing, p.leaf / 2);
+  automatic(p.normal_radius, 1.3 * p.leaf);
+  automatic(p.curvature_radius, p.leaf * 10 / 3);
+  automatic(p.d_dist, 0.6 * p.leaf);
+  automatic(p.min_pair_distance, 1.5 * p.leaf);
+  if (p.leaf > diameter / 5)
+    throw ParameterError("the leaf is " + std::to_string(1e3 * p.leaf) + " mm, but the part is only " +
+                         std::to_string(1e3 * diameter) +
+                         " mm across; at most a fifth of that is useful (is the unit right?)");
+}
+
+/// The part's surface, dense enough for normals and curvature.
+OrientedPoints denseSurface(const PartDefinition& definition, TrainedModel& model)
+{
+  if (isPointModel(definition.mesh_file))
+  {
+    OrientedPoints points = loadOrientedPoints(definition.mesh_file, definition.mesh_unit);
+    model.diameter = largestDistance(points.points);
+    resolve(model.parameters, model.diameter);
+    return points;
+  }
+  model.mesh = loadMesh(definition.mesh_file, definition.mesh_unit);
+  model.diameter = largestDistance(model.mesh.vertices);
+  resolve(model.parameters, model.diameter);
+  const double spacing = std::min(model.parameters.surface_spacing, model.parameters.leaf / 2) / 2;
+  return sampleSurface(model.mesh, spacing, static_cast<std::uint32_t>(model.parameters.seed));
+}
+
+void measureSize(TrainedModel& model, const OrientedPoints& dense)
+{
+  Eigen::Vector3f low = dense.points.front();
+  Eigen::Vector3f high = low;
+  for (const auto& p : dense.points)
+  {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  model.size = (high - low).cast<double>();
+  model.center = (high + low).cast<double>() / 2;
+}
+
+/// Per surface point the set of views that see it, as bits.
+std::vector<std::uint64_t> visibilityBits(const TrainedModel& model, std::size_t words)
+{
+  std::vector<std::uint64_t> bits(model.surface.size() * words, 0);
+  for (std::size_t v = 0; v < model.views.size(); ++v)
+    for (const std::uint32_t point : model.views[v].visible)
+      bits[point * words + v / 64] |= std::uint64_t{1} << (v % 64);
+  return bits;
+}
+
+int countBits(const std::uint64_t* bits, std::size_t words)
+{
+  int count = 0;
+  for (std::size_t w = 0; w < words; ++w)
+    count += __builtin_popcountll(bits[w]);
+  return count;
+}
+
+/// Keeps the points of the outer surface, each with the visibility of the surface point next to it.
+std::vector<std::uint64_t> keepVisible(OrientedPoints& points, const TrainedModel& model, std::size_t words)
+{
+  const std::vector<std::uint64_t> surface_bits = visibilityBits(model, words);
+  const KdTree tree(model.surface.points);
+  const int min_views = std::max(1, static_cast<int>(MIN_SEEN_SHARE * static_cast<double>(model.views.size())));
+  std::vector<int> kept;
+  std::vector<std::uint64_t> kept_bits;
+  std::vector<int> neighbours;
+  std::vector<std::uint64_t> bits(words);
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    // All surface points of the leaf count, on the same side of the wall.
+    tree.radiusSearch(points.points[i], static_cast<float>(model.parameters.leaf * 0.75), neighbours);
+    std::fill(bits.begin(), bits.end(), 0);
+    for (const int n : neighbours)
+      if (model.surface.normals[static_cast<std::size_t>(n)].dot(points.normals[i]) > 0.5f)
+        for (std::size_t w = 0; w < words; ++w)
+          bits[w] |= surface_bits[static_cast<std::size_t>(n) * words + w];
+    if (countBits(bits.data(), words) < min_views)
+      continue;
+    kept.push_back(static_cast<int>(i));
+    kept_bits.insert(kept_bits.end(), bits.begin(), bits.end());
+  }
+  points = select(points, kept);
+  return kept_bits;
+}
+
+FeatureQuantizer makeQuantizer(const TrainedModel& model)
+{
+  const TrainingParameters& p = model.parameters;
+  FeatureQuantizer quantizer;
+  quantizer.distance_step = p.d_dist;
+  quantizer.angle_step = p.d_angle;
+  quantizer.distance_bins = static_cast<int>(model.diameter / p.d_dist) + 1;
+  quantizer.angle_bins = static_cast<int>(std::ceil(M_PI / p.d_angle - 1e-6));
+  if (p.feature != FeatureKind::Ppf)
+    chooseCurvatureBins(quantizer, model.points.curvature, p.d_cur,
+                        p.curvature_measure == CurvatureMeasure::MeanCurvature ? 1 / p.curvature_radius : 1.0);
+  return quantizer;
+}
+
+std::vector<std::int8_t> classify(TrainedModel& model)
+{
+  TrainingParameters& p = model.parameters;
+  model.classes = p.high_curvature_min > 0 ? CurvatureClasses{p.low_curvature_max, p.high_curvature_min}
+                                           : classesFromHistogram(model.points.curvature);
+  std::vector<std::int8_t> classes(model.points.size(), 0);
+  if (p.feature == FeatureKind::CurPpf)
+    for (std::size_t i = 0; i < classes.size(); ++i)
+      classes[i] = static_cast<std::int8_t>(model.classes.classOf(model.points.curvature[i]));
+  return classes;
+}
+
+void checkPoints(const TrainedModel& model)
+{
+  if (model.points.size() < MIN_MODEL_POINTS)
+    throw ParameterError("only " + std::to_string(model.points.size()) + " model points are left at a leaf of " +
+                         std::to_string(1e3 * model.parameters.leaf) + " mm, but at least " +
+                         std::to_string(MIN_MODEL_POINTS) + " are needed; choose a finer leaf");
+}
+}  // namespace
+
+std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, const TrainingParameters& parameters,
+                                              const Executor& executor,
+                                              const std::function<void(const std::string&)>& progress)
+{
+  const auto report = [&progress](const char* stage) {
+    if (progress)
+      progress(stage);
+  };
+  auto model = std::make_shared<TrainedModel>();
+  model->name = definition.name;
+  model->symmetry = definition.symmetry;
+  model->mesh_hash = hashFile(definition.mesh_file);
+  model->parameter_hash = requestHash(definition, parameters);
+  model->parameters = parameters;
+  setParametersFromYaml(visitor(model->parameters), definition.training_yaml, definition.directory + "/part.yaml");
+
+  report("surface");
+  const OrientedPoints dense = denseSurface(definition, *model);
+  const TrainingParameters& p = model->parameters;
+  measureSize(*model, dense);
+  model->surface = voxelDownsample(dense, p.surface_spacing);
+  report("views");
+  model->views = renderViewTemplates(model->mesh, model->surface, p.surface_spacing / 2, p.num_views, executor);
+  report("normals and curvature");
+  model->points = resampleSurface(dense, {p.leaf, p.normal_radius, p.curvature_measure, p.curvature_radius}, executor);
+  const std::size_t words = (model->views.size() + 63) / 64;
+  std::vector<std::uint64_t> visibility = keepVisible(model->points, *model, words);
+  checkPoints(*model);
+  if (!p.covisible_pairs)
+    visibility.clear();
+  report("feature table");
+  const std::vector<std::int8_t> classes = classify(*model);
+  model->table = FeatureTable(model->points, classes, visibility, static_cast<int>(words), makeQuantizer(*model),
+                              p.min_pair_distance, executor);
+  return model;
+}
+}  // namespace bin_picking

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_picking_perception/model/training_parameters.hpp"
+
+namespace bin_picking
+{
+void TrainingParameters::visit(ParameterVisitor& v)
+{
+  v.field(
+      {"leaf", "m",
+       "voxel edge of the downsampling; 0 = 4 % of the diameter. Voting time grows with about its -8th power", 0, 0.1},
+      leaf);
+  v.field({"surface_spacing", "m",
+           "distance of the finer surface points for verification and refinement; 0 = half the leaf", 0, 0.05},
+          surface_spacing);
+  v.field({"seed", "", "seed of the surface sampling; the same seed gives the same model", 0, 2147483647}, seed);
+  v.field({"normal_radius", "m", "radius of the plane fit for normals, on part and scene; 0 = 1.3 leaf", 0, 0.1},
+          normal_radius);
+  v.field({"feature", "", "Equation 5 with all six dimensions, weighted by Equation 8 or not, or its first four"},
+          feature,
+          {{"ppf", FeatureKind::Ppf},
+           {"cur_ppf_unweighted", FeatureKind::CurPpfUnweighted},
+           {"cur_ppf", FeatureKind::CurPpf}});
+  v.field(
+      {"curvature_measure", "",
+       "Equation 4 (1/m, signed), or the variance of the normals that the published constants fit"},
+      curvature_measure,
+      {{"mean_curvature", CurvatureMeasure::MeanCurvature}, {"normal_variation", CurvatureMeasure::NormalVariation}});
+  v.field({"curvature_radius", "m", "neighbourhood of the curvature, on part and scene; 0 = 3.3 leaf", 0, 0.2},
+          curvature_radius);
+  v.field({"d_dist", "m", "step of the distance in the feature; 0 = 0.6 leaf", 0, 0.1}, d_dist);
+  v.field({"d_angle", "rad", "step of the three angles in the feature, and of alpha in the accumulator", 0.02, 1.0},
+          d_angle);
+  v.field({"d_cur", "1/m or none",
+           "step of the curvatures in the feature, in the unit of the measure; 0 = from the part", 0, 1e5},
+          d_cur);
+  v.field({"low_curvature_max", "1/m or none",
+           "upper end of the low-curvature range of Equation 8; 0 with high = automatic", 0, 1e5},
+          low_curvature_max);
+  v.field({"high_curvature_min", "1/m or none",
+           "lower end of the high-curvature range of Equation 8; 0 with low = automatic", 0, 1e5},
+          high_curvature_min);
+  v.field({"min_pair_distance", "m", "nearer pairs are not stored: their features say little; 0 = 1.5 leaf", 0, 0.2},
+          min_pair_distance);
+  v.field({"covisible_pairs", "", "store only pairs of points that one camera can see together"}, covisible_pairs);
+  v.field({"num_views", "", "directions from which the part is rendered", 12, 4096}, num_views);
+}
+}  // namespace bin_picking

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_picking_perception/refinement/verification.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bin_picking_perception/common/kd_tree.hpp"
+
+namespace bin_picking
+{
+void VerificationParameters::visit(ParameterVisitor& v)
+{
+  v.field({"enabled", "", "test poses against the depth grid; false: only the matching rate decides (the paper)"}, enabled);
+  v.field({"match_distance", "m", "distance threshold of the matching rate (Equation 9)", 1e-4, 0.1}, match_distance);
+  v.field({"min_matching_rate", "", "smallest accepted matching rate", 0, 1}, min_matching_rate);
+  v.field({"depth_tolerance", "", "distance to the surface that still explains a point, in leaves, noise not counted", 0.01, 5},
+          depth_tolerance);
+  v.field({"noise_tolerance", "", "what is added to it, in standard deviations of the measured noise", 0, 10}, noise_tolerance);
+  v.field({"max_normal_angle", "rad", "a point whose normal is turned by more is not explained", 0.05, 3.2}, max_normal_angle);
+  v.field({"min_visible_fraction", "", "smallest explained share of the surface that faces the camera; less accepts parts "
+                                       "that are hidden more", 0, 1}, min_visible_fraction);
+  v.field({"min_inlier_share", "", "smallest share of explained points among those that speak for or against a pose", 0, 1},
+          min_inlier_share);
+  v.field({"max_violation_share", "", "largest share of points behind which the sensor saw something", 0, 1}, max_violation_share);
+  v.field({"unmeasured_weight", "", "how much a point without data speaks against a pose, compared to a contradicted one", 0, 1},
+          unmeasured_weight);
+  v.field({"overlap", "", "a detection that shares more than this part of its pixels with better ones is dropped", 0.01, 1}, overlap);
+  v.field({"max_refined", "", "clusters that are refined and tested in full, best first", 1, 10000}, max_refined);
+}
+
+double PoseEvidence::inlierShare(double unmeasured_weight) const
+{
+  const double all = explained + misfit + violated + unmeasured_weight * unmeasured;
+  return all > 0 ? explained / all : 0;
+}
+
+double PoseEvidence::violationShare() const
+{
+  const int measured = explained + misfit + violated;
+  return measured > 0 ? static_cast<double>(violated) / measured : 1;
+}
+
+double PoseEvidence::matchingRate() const
+{
+  const int object_points = explained + misfit + violated;
+  return object_points > 0 ? static_cast<double>(matched) / object_points : 0;
+}
+
+const ViewTemplate& nearestView(const TrainedModel& model, const Pose& T_camera_object)
+{
+  const Eigen::Vector3f direction =
+      (T_camera_object.inverse().translation() - model.center).normalized().cast<float>();
+  return *std::max_element(model.views.begin(), model.views.end(), [&](const ViewTemplate& a, const ViewTemplate& b) {
+    return a.direction.dot(direction) < b.direction.dot(direction);
+  });
+}
+
+OrientedPoints facingPoints(const TrainedModel& model, const Pose& T_camera_object, std::size_t max_points)
+{
+  const auto& visible = nearestView(model, T_camera_object).visible;
+  const std::size_t step = std::max<std::size_t>(1, (visible.size() + max_points - 1) / max_points);
+  OrientedPoints facing;
+  for (std::size_t i = 0; i < visible.size(); i += step)
+  {
+    facing.points.push_back(model.surface.points[visible[i]]);
+    facing.normals.push_back(model.surface.normals[visible[i]]);
+  }
+  return facing;
+}
+
+namespace
+{
+enum class Verdict
+{
+  Explained,
+  Misfit,
+  Occluded,
+  Violated,
+  Unmeasured
+};
+
+struct Finding
+{
+  Verdict verdict = Verdict::Unmeasured;
+  int pixel = -1;
+  float residual = 0;
+  bool matched = false;
+};
+
+class PointTest
+{
+public:
+  PointTest(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& normals, double tolerance,
+            const VerificationParameters& parameters)
+    : grid_(grid),
+      normals_(normals),
+      tolerance_(static_cast<float>(tolerance)),
+      match_distance_(static_cast<float>(parameters.match_distance)),
+      min_cosine_(static_cast<float>(std::cos(parameters.max_normal_angle)))
+  {
+  }
+
+  Finding operator()(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const
+  {
+    const auto& camera = grid_.camera;
+    const auto u = static_cast<int>(std::lround(camera.fx * static_cast<double>(point.x() / point.z()) + camera.cx));
+    const auto v = static_cast<int>(std::lround(camera.fy * static_cast<double>(point.y() / point.z()) + camera.cy));
+    Finding finding;
+    if (!grid_.inside(u, v))
+      return finding;
+    const int center = grid_.index(u, v);
+    // The measured surface may lie half a pixel beside the ray: a neighbour that explains the point is as good.
+    constexpr int AROUND[5][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    for (const auto& offset : AROUND)
+      if (grid_.inside(u + offset[0], v + offset[1]) &&
+          explains(grid_.index(u + offset[0], v + offset[1]), point, normal, finding))
+        return finding;
+    if (grid_.valid(center))
+      finding.verdict = contradiction(center, point, normal);
+    return finding;
+  }
+
+private:
+  bool explains(int pixel, const Eigen::Vector3f& point, const Eigen::Vector3f& normal, Finding& finding) const
+  {
+    if (!grid_.valid(pixel))
+      return false;
+    const Eigen::Vector3f d = grid_.point(pixel) - point;
+    const auto pitch = static_cast<float>(grid_.pitch(static_cast<double>(point.z())));
+    const float residual = normal.dot(d);
+    const float aside = (d - residual * normal).norm();
+    // The pixel's footprint on a surface that is seen at a flat angle.
+    const float cosine = std::max(0.2f, -normal.dot(point) / point.norm());
+    const bool is_near = aside < tolerance_ + 1.5f * pitch / cosine;
+    finding.matched = finding.matched || (is_near && std::abs(residual) < match_distance_);
+    if (!is_near || std::abs(residual) > tolerance_)
+      return false;
+    const Eigen::Vector3f& measured = normals_[static_cast<std::size_t>(pixel)];
+    if (!std::isnan(measured.x()) && measured.dot(normal) < min_cosine_)
+      return false;
+    finding.verdict = Verdict::Explained;
+    finding.pixel = pixel;
+    finding.residual = residual;
+    return true;
+  }
+
+  Verdict contradiction(int pixel, const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const
+  {
+    const auto pitch = static_cast<float>(grid_.pitch(static_cast<double>(point.z())));
+    const float cosine = std::max(0.3f, -normal.dot(point) / point.norm());
+    const float limit = tolerance_ / cosine + pitch * std::sqrt(1 - cosine * cosine) / cosine;
+    const float ahead = point.z() - grid_.z[static_cast<std::size_t>(pixel)];
+    if (ahead > limit)
+      return Verdict::Occluded;
+    return ahead < -limit ? Verdict::Violated : Verdict::Misfit;
+  }
+
+  const DepthGrid& grid_;
+  const std::vector<Eigen::Vector3f>& normals_;
+  float tolerance_;
+  float match_distance_;
+  float min_cosine_;
+};
+
+void count(const Finding& finding, PoseEvidence& evidence)
+{
+  switch (finding.verdict)
+  {
+    case Verdict::Explained:
+      ++evidence.explained;
+      evidence.pixels.push_back(finding.pixel);
+      evidence.rms += static_cast<double>(finding.residual * finding.residual);
+      break;
+    case Verdict::Misfit:
+      ++evidence.misfit;
+      break;
+    case Verdict::Occluded:
+      ++evidence.occluded;
+      break;
+    case Verdict::Violated:
+      ++evidence.violated;
+      break;
+    case Verdict::Unmeasured:
+      ++evidence.unmeasured;
+      break;
+  }
+  const bool object_point = finding.verdict != Verdict::Occluded && finding.verdict != Verdict::Unmeasured;
+  evidence.matched += object_point && finding.matched;
+}
+}  // namespace
+
+PoseEvidence gatherEvidence(const OrientedPoints& facing, const Pose& T_camera_object, const DepthGrid& grid,
+                            const std::vector<Eigen::Vector3f>& normals, double tolerance,
+                            const VerificationParameters& parameters)
+{
+  const Eigen::Isometry3f T = T_camera_object.cast<float>();
+  const PointTest test(grid, normals, tolerance, parameters);
+  PoseEvidence evidence;
+  for (std::size_t i = 0; i < facing.size(); ++i)
+  {
+    const Eigen::Vector3f point = T * facing.points[i];
+    const Eigen::Vector3f normal = T.linear() * facing.normals[i];
+    if (point.z() <= 0 || normal.dot(point) >= 0)
+      continue;  // just beyond the silhouette at this pose
+    ++evidence.facing;
+    count(test(point, normal), evidence);
+  }
+  evidence.rms = evidence.explained > 0 ? std::sqrt(evidence.rms / evidence.explained) :
+                                          std::numeric_limits<double>::quiet_NaN();
+  std::sort(evidence.pixels.begin(), evidence.pixels.end());
+  evidence.pixels.erase(std::unique(evidence.pixels.begin(), evidence.pixels.end()), evidence.pixels.end());
+  return evidence;
+}
+
+double matchingRate(const OrientedPoints& model_surface, const Pose& T_camera_object,
+                    const std::vector<Eigen::Vector3f>& object_points, double distance)
+{
+  if (object_points.empty())
+    return 0;
+  const KdTree tree(model_surface.points);
+  const Eigen::Isometry3f T_object_camera = T_camera_object.inverse().cast<float>();
+  std::size_t matched = 0;
+  for (const auto& point : object_points)
+    matched += tree.nearest(T_object_camera * point, static_cast<float>(distance)).index >= 0;
+  return static_cast<double>(matched) / static_cast<double>(object_points.size());
+}
+}  // namespace bin_picking
