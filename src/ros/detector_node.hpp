@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <bin_picking_perception/GetBestGrasp.h>
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/spinner.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "cloud_buffer.hpp"
+#include "frame_lookup.hpp"
+#include "model_loader.hpp"
+#include "node_diagnostics.hpp"
+#include "node_parameters.hpp"
+#include "pick_pipeline.hpp"
+#include "result_publisher.hpp"
+#include "tuning.hpp"
+
+namespace bin_picking_ros
+{
+/// The detector as a ROS node: clouds in, service answers, topics and tf out. The constructor returns at once; models are
+/// loaded in the background. Threads: the caller's queue takes clouds, timers and reconfiguration and never waits; the
+/// service has a queue and a thread of its own; so has continuous processing.
+class DetectorNode
+{
+public:
+  /// \throws bin_picking::Error if a parameter, part.yaml, bin or gripper file is wrong
+  DetectorNode(ros::NodeHandle nh, ros::NodeHandle private_nh);
+  /// Ends waiting requests and joins all threads.
+  ~DetectorNode();
+  DetectorNode(const DetectorNode&) = delete;
+  DetectorNode& operator=(const DetectorNode&) = delete;
+
+private:
+  using Request = bin_picking_perception::GetBestGrasp::Request;
+  using Response = bin_picking_perception::GetBestGrasp::Response;
+
+  /// One request on its way, so that also a failure knows its cloud and the time spent.
+  struct Job;
+
+  void startService(const ros::NodeHandle& private_nh);
+  void setModels(const ModelLoader::Models& models);
+  void retune(const NodeParameters& parameters);
+  void rebuildPipeline();
+  std::shared_ptr<const PickPipeline> readyPipeline() const;
+
+  bool handleRequest(Request& request, Response& response);
+  Response answer(const Request& request, Job& job);
+  sensor_msgs::PointCloud2ConstPtr waitForNew(const Job& job) const;
+  sensor_msgs::PointCloud2ConstPtr takeLatest(const Request& request, const Job& job) const;
+  OutputFrame outputFrame(const std_msgs::Header& cloud_header, const std::string& frame) const;
+  std::optional<bin_picking::Bin> binAt(const std_msgs::Header& cloud_header) const;
+  PickResult process(const PickPipeline& pipeline, PickRequest pick, const OutputFrame& output, const Job& job);
+  void processContinuously();
+  Response fail(const ReturnCode& code, const Job& job);
+
+  const NodeParameters parameters_;
+  bin_picking::Gripper gripper_;
+  std::optional<bin_picking::Bin> bin_;
+  std::vector<bin_picking::PartDefinition> parts_;
+  ros::NodeHandle nh_;
+
+  CloudBuffer clouds_;
+  FrameLookup frames_;
+  ResultPublisher publisher_;
+  mutable std::mutex pipeline_mutex_;  ///< guards the next three
+  NodeParameters tuned_;               ///< parameters_ with what dynamic_reconfigure changed
+  ModelLoader::Models models_;         ///< empty until they are loaded
+  std::shared_ptr<const PickPipeline> pipeline_;
+  std::unique_ptr<ModelLoader> loader_;
+  std::unique_ptr<NodeDiagnostics> diagnostics_;
+  std::unique_ptr<Tuning> tuning_;
+
+  ros::Subscriber cloud_subscriber_;
+  ros::CallbackQueue service_queue_;
+  ros::ServiceServer service_;
+  std::unique_ptr<ros::AsyncSpinner> service_spinner_;
+  std::thread continuous_thread_;
+};
+}  // namespace bin_picking_ros

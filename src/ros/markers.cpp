@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "markers.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+
+#include "bin_picking_perception/evaluation/detection_picture.hpp"
+#include "pose_conversion.hpp"
+
+namespace bin_picking_ros
+{
+namespace
+{
+using bin_picking::Pose;
+using bin_picking::TriangleMesh;
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr std::size_t MAX_DISPLAY_TRIANGLES = 3000;  // per part: 25 parts stay below 6 MB
+
+geometry_msgs::Point toPoint(const Eigen::Vector3d& p)
+{
+  geometry_msgs::Point point;
+  point.x = p.x();
+  point.y = p.y();
+  point.z = p.z();
+  return point;
+}
+
+std_msgs::ColorRGBA toColor(const Eigen::Vector3f& rgb, float alpha)
+{
+  std_msgs::ColorRGBA color;
+  color.r = rgb.x();
+  color.g = rgb.y();
+  color.b = rgb.z();
+  color.a = alpha;
+  return color;
+}
+
+Marker makeMarker(const std_msgs::Header& header, const char* name_space, std::size_t id, std::int32_t type)
+{
+  Marker marker;
+  marker.header = header;
+  marker.ns = name_space;
+  marker.id = static_cast<std::int32_t>(id);
+  marker.type = type;
+  marker.action = Marker::ADD;
+  marker.pose.orientation.w = 1.0;
+  marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
+  return marker;
+}
+
+/// The twelve edges of the bin's inner box.
+Marker binMarker(const bin_picking::Bin& bin, const OutputFrame& output)
+{
+  Marker marker = makeMarker(output.header, "bin", 0, Marker::LINE_LIST);
+  marker.pose = toPoseMessage(output.T_output_camera * bin.T_camera_bin);
+  marker.scale.x = 0.003;
+  marker.color = toColor({0.9f, 0.9f, 0.9f}, 1.0f);
+  const auto corner = [&bin](unsigned bits) {
+    return toPoint({((bits & 1u) ? 0.5 : -0.5) * bin.inner_size.x(), ((bits & 2u) ? 0.5 : -0.5) * bin.inner_size.y(),
+                    (bits & 4u) ? bin.inner_size.z() : 0.0});
+  };
+  for (unsigned from = 0; from < 8; ++from)
+    for (const unsigned direction : {1u, 2u, 4u})
+      if ((from & direction) == 0)
+      {
+        marker.points.push_back(corner(from));
+        marker.points.push_back(corner(from | direction));
+      }
+  return marker;
+}
+
+Marker labelMarker(std::size_t rank, const bin_picking::Detection& detection, const OutputFrame& output)
+{
+  Marker marker = makeMarker(output.header, "labels", rank, Marker::TEXT_VIEW_FACING);
+  marker.pose = toPoseMessage(output.T_output_camera * detection.T_camera_object);
+  marker.scale.z = 0.015;
+  marker.color = toColor({1.0f, 1.0f, 1.0f}, 1.0f);
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%zu: %.2f", rank, detection.score);
+  marker.text = text.data();
+  return marker;
+}
+}  // namespace
+
+TriangleMesh simplifyForDisplay(const TriangleMesh& mesh, std::size_t max_triangles)
+{
+  if (mesh.triangles.size() <= max_triangles)
+    return mesh;
+  // With n cells along its diagonal, the surface of a compact part passes through about 2 n^2 cells, two triangles each.
+  const double cells = std::sqrt(static_cast<double>(max_triangles) / 4.0);
+  const float cell = static_cast<float>(bin_picking::boundingBoxDiagonal(mesh.vertices) / cells);
+  TriangleMesh result;
+  std::map<std::array<std::int64_t, 3>, std::uint32_t> cluster_of_cell;
+  std::vector<std::uint32_t> cluster(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+  {
+    const Eigen::Vector3f& v = mesh.vertices[i];
+    const std::array<std::int64_t, 3> key = {std::llround(v.x() / cell), std::llround(v.y() / cell), std::llround(v.z() / cell)};
+    const auto [entry, is_new] = cluster_of_cell.emplace(key, static_cast<std::uint32_t>(result.vertices.size()));
+    if (is_new)
+      result.vertices.push_back(v);
+    cluster[i] = entry->second;
+  }
+  for (const auto& triangle : mesh.triangles)
+  {
+    const std::array<std::uint32_t, 3> t = {cluster[triangle[0]], cluster[triangle[1]], cluster[triangle[2]]};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+      result.triangles.push_back(t);
+  }
+  return result;
+}
+
+MarkerMaker::MarkerMaker(std::vector<std::shared_ptr<const bin_picking::TrainedModel>> models, bin_picking::Gripper gripper)
+  : models_(std::move(models)), gripper_(std::move(gripper))
+{
+  for (const auto& model : models_)
+    meshes_.push_back(simplifyForDisplay(model->mesh, MAX_DISPLAY_TRIANGLES));
+}
+
+Marker MarkerMaker::partMarker(const bin_picking::Detection& detection, const OutputFrame& output) const
+{
+  const TriangleMesh& mesh = meshes_.at(detection.model_index);
+  Marker marker = makeMarker(output.header, "parts", 0, mesh.empty() ? Marker::POINTS : Marker::TRIANGLE_LIST);
+  marker.pose = toPoseMessage(output.T_output_camera * detection.T_camera_object);
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle)
+      marker.points.push_back(toPoint(mesh.vertices[vertex].cast<double>()));
+  if (mesh.empty())  // a model from points only
+  {
+    marker.scale.x = marker.scale.y = 0.001;
+    for (const Eigen::Vector3f& point : models_[detection.model_index]->points.points)
+      marker.points.push_back(toPoint(point.cast<double>()));
+  }
+  return marker;
+}
+
+void MarkerMaker::addDetections(const PickResult& result, const OutputFrame& output, MarkerArray& markers) const
+{
+  for (std::size_t rank = 0; rank < result.detection.detections.size(); ++rank)
+  {
+    const bin_picking::Detection& detection = result.detection.detections[rank];
+    markers.markers.push_back(partMarker(detection, output));
+    markers.markers.back().id = static_cast<std::int32_t>(rank);
+    markers.markers.back().color = toColor(bin_picking::rankColor(rank), 1.0f);
+    markers.markers.push_back(labelMarker(rank, detection, output));
+  }
+  for (std::size_t i = 0; i < result.detection.rejected.size(); ++i)
+  {
+    markers.markers.push_back(partMarker(result.detection.rejected[i], output));
+    markers.markers.back().ns = "rejected";
+    markers.markers.back().id = static_cast<std::int32_t>(i);
+    markers.markers.back().color = toColor({0.5f, 0.5f, 0.5f}, 0.3f);
+  }
+}
+
+void MarkerMaker::addGrasp(const bin_picking::Grasp& grasp, const OutputFrame& output, MarkerArray& markers) const
+{
+  Marker arrow = makeMarker(output.header, "grasp", 0, Marker::ARROW);
+  arrow.points.push_back(toPoint((output.T_output_camera * grasp.T_camera_pre_grasp).translation()));
+  arrow.points.push_back(toPoint((output.T_output_camera * grasp.T_camera_grasp).translation()));
+  arrow.scale.x = 0.004;  // shaft
+  arrow.scale.y = 0.010;  // head
+  arrow.scale.z = 0.015;
+  arrow.color = toColor({0.1f, 0.9f, 0.9f}, 1.0f);
+  markers.markers.push_back(arrow);
+
+  for (std::size_t i = 0; i < gripper_.boxes.size(); ++i)
+  {
+    const bin_picking::GripperBox& box = gripper_.boxes[i];
+    Pose T_tip_box = Pose::Identity();
+    T_tip_box.translation() = box.center + Eigen::Vector3d(0.0, box.finger * grasp.opening / 2, 0.0);
+    Marker marker = makeMarker(output.header, "gripper", i, Marker::CUBE);
+    marker.pose = toPoseMessage(output.T_output_camera * grasp.T_camera_grasp * T_tip_box);
+    marker.scale.x = box.size.x();
+    marker.scale.y = box.size.y();
+    marker.scale.z = box.size.z();
+    marker.color = toColor({0.2f, 0.7f, 0.9f}, 0.5f);
+    markers.markers.push_back(marker);
+  }
+}
+
+MarkerArray MarkerMaker::make(const PickResult& result, const OutputFrame& output) const
+{
+  MarkerArray markers = noMarkers(output.header);
+  if (result.bin)
+    markers.markers.push_back(binMarker(*result.bin, output));
+  addDetections(result, output, markers);
+  if (!result.selection.grasps.empty())
+    addGrasp(result.selection.grasps.front(), output, markers);
+  return markers;
+}
+
+MarkerArray noMarkers(const std_msgs::Header& header)
+{
+  MarkerArray markers;
+  markers.markers.emplace_back();
+  markers.markers.back().header = header;
+  markers.markers.back().action = Marker::DELETEALL;
+  markers.markers.back().pose.orientation.w = 1.0;
+  return markers;
+}
+}  // namespace bin_picking_ros

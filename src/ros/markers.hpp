@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <visualization_msgs/MarkerArray.h>
+
+#include <memory>
+#include <vector>
+
+#include "bin_picking_perception/grasping/gripper.hpp"
+#include "message_conversion.hpp"
+
+namespace bin_picking_ros
+{
+/// A mesh with at most about `max_triangles` triangles for display: vertices that share a cell of a grid become one. A small
+/// mesh is returned as it is.
+bin_picking::TriangleMesh simplifyForDisplay(const bin_picking::TriangleMesh& mesh, std::size_t max_triangles);
+
+/// Pictures of results for rviz. Namespaces: parts (coloured by rank), labels, rejected (gray), bin, grasp, gripper.
+class MarkerMaker
+{
+public:
+  MarkerMaker(std::vector<std::shared_ptr<const bin_picking::TrainedModel>> models, bin_picking::Gripper gripper);
+
+  /// Begins with the removal of all earlier markers.
+  visualization_msgs::MarkerArray make(const PickResult& result, const OutputFrame& output) const;
+
+private:
+  visualization_msgs::Marker partMarker(const bin_picking::Detection& detection, const OutputFrame& output) const;
+  void addDetections(const PickResult& result, const OutputFrame& output, visualization_msgs::MarkerArray& markers) const;
+  void addGrasp(const bin_picking::Grasp& grasp, const OutputFrame& output, visualization_msgs::MarkerArray& markers) const;
+
+  std::vector<std::shared_ptr<const bin_picking::TrainedModel>> models_;
+  std::vector<bin_picking::TriangleMesh> meshes_;
+  bin_picking::Gripper gripper_;
+};
+
+/// Only the removal of all earlier markers.
+visualization_msgs::MarkerArray noMarkers(const std_msgs::Header& header);
+}  // namespace bin_picking_ros

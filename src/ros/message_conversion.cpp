@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "message_conversion.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "pose_conversion.hpp"
+
+namespace bin_picking_ros
+{
+namespace msgs = bin_picking_perception;
+
+namespace
+{
+msgs::Criterion toMessage(const bin_picking::Criterion& criterion)
+{
+  msgs::Criterion message;
+  message.name = criterion.name;
+  message.value = criterion.value;
+  message.required = criterion.required;
+  message.upper_limit = criterion.upper_limit;
+  message.passed = criterion.passed();
+  return message;
+}
+
+msgs::Detection toMessage(const bin_picking::Detection& detection, const OutputFrame& output)
+{
+  msgs::Detection message;
+  message.header = output.header;
+  message.part = detection.part;
+  message.pose = toPoseMessage(output.T_output_camera * detection.T_camera_object);
+  message.score = detection.score;
+  message.matching_rate = detection.matching_rate;
+  message.visible_fraction = detection.visible_fraction;
+  message.rms = detection.rms;
+  message.votes = detection.votes;
+  message.accepted = detection.rejection.empty();
+  message.rejection = detection.rejection;
+  for (const bin_picking::Criterion& criterion : detection.criteria)
+    message.criteria.push_back(toMessage(criterion));
+  return message;
+}
+
+msgs::Grasp toMessage(const bin_picking::Grasp& grasp, const OutputFrame& output)
+{
+  msgs::Grasp message;
+  message.header = output.header;
+  message.part = grasp.part;
+  message.grasp_id = grasp.grasp_id;
+  message.detection_index = static_cast<std::uint32_t>(grasp.detection_index);
+  message.symmetry_variant = static_cast<std::uint32_t>(grasp.symmetry_variant);
+  message.pre_grasp = toPoseMessage(output.T_output_camera * grasp.T_camera_pre_grasp);
+  message.grasp = toPoseMessage(output.T_output_camera * grasp.T_camera_grasp);
+  message.retreat = toPoseMessage(output.T_output_camera * grasp.T_camera_retreat);
+  message.object_in_tip = toPoseMessage(grasp.T_tip_object);
+  message.width = grasp.width;
+  message.opening = grasp.opening;
+  message.priority = grasp.priority;
+  message.tilt = grasp.tilt;
+  message.bin_clearance = grasp.bin_clearance;
+  message.quality = grasp.quality;
+  return message;
+}
+
+/// Every rejected detection counts once, under the first criterion it failed.
+std::string reasonOf(const bin_picking::Detection& detection)
+{
+  for (const bin_picking::Criterion& criterion : detection.criteria)
+    if (!criterion.passed())
+      return criterion.name;
+  return "other";
+}
+}  // namespace
+
+msgs::DetectionArray toDetectionArray(const PickResult& result, const OutputFrame& output)
+{
+  msgs::DetectionArray message;
+  message.header = output.header;
+  message.code = result.code;
+  for (const auto* list : {&result.detection.detections, &result.detection.rejected})
+    for (const bin_picking::Detection& detection : *list)
+    {
+      message.detections.push_back(toMessage(detection, output));
+      message.detections.back().index = static_cast<std::uint32_t>(message.detections.size() - 1);
+    }
+  return message;
+}
+
+msgs::GraspArray toGraspArray(const PickResult& result, const OutputFrame& output)
+{
+  msgs::GraspArray message;
+  message.header = output.header;
+  for (const bin_picking::Grasp& grasp : result.selection.grasps)
+    message.grasps.push_back(toMessage(grasp, output));
+  return message;
+}
+
+geometry_msgs::PoseArray toPoseArray(const PickResult& result, const OutputFrame& output)
+{
+  geometry_msgs::PoseArray message;
+  message.header = output.header;
+  for (const bin_picking::Detection& detection : result.detection.detections)
+    message.poses.push_back(toPoseMessage(output.T_output_camera * detection.T_camera_object));
+  return message;
+}
+
+std::vector<msgs::RejectCount> countRejections(const PickResult& result)
+{
+  std::map<std::pair<std::string, std::string>, std::uint32_t> counts;
+  for (const bin_picking::Detection& detection : result.detection.rejected)
+    ++counts[{"detection", reasonOf(detection)}];
+  for (const bin_picking::Grasp& grasp : result.selection.rejected)
+    ++counts[{"grasp", bin_picking::toString(grasp.rejection)}];
+
+  std::vector<msgs::RejectCount> messages;
+  for (const auto& [key, count] : counts)
+  {
+    messages.emplace_back();
+    messages.back().kind = key.first;
+    messages.back().reason = key.second;
+    messages.back().count = count;
+  }
+  std::stable_sort(messages.begin(), messages.end(),
+                   [](const msgs::RejectCount& a, const msgs::RejectCount& b) { return a.count > b.count; });
+  return messages;
+}
+
+msgs::GetBestGrasp::Response toResponse(const PickResult& result, const OutputFrame& output)
+{
+  msgs::GetBestGrasp::Response response;
+  response.code = result.code;
+  response.header = output.header;
+  response.grasps = toGraspArray(result, output).grasps;
+  response.detections = toDetectionArray(result, output).detections;
+  response.rejected = countRejections(result);
+  for (const bin_picking::StageTime& time : result.detection.timing)
+  {
+    response.timing.emplace_back();
+    response.timing.back().stage = time.stage;
+    response.timing.back().seconds = time.seconds;
+  }
+  response.timing.emplace_back();
+  response.timing.back().stage = "total";
+  response.timing.back().seconds = result.detection.total_seconds;
+  return response;
+}
+}  // namespace bin_picking_ros

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "node_parameters.hpp"
+
+#include <ros/param.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <sstream>
+
+#include "bin_picking_perception/common/error.hpp"
+
+namespace bin_picking_ros
+{
+namespace
+{
+using bin_picking::ParameterError;
+using XmlRpc::XmlRpcValue;
+
+/// Parameters that ROS tools keep in the same namespace.
+const std::set<std::string> FOREIGN = {"tuning", "diagnostic_period"};
+
+std::string numberText(double value)
+{
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  text << value;
+  return text.str();
+}
+
+std::string scalarText(XmlRpcValue& value, const std::string& path)
+{
+  switch (value.getType())
+  {
+    case XmlRpcValue::TypeBoolean:
+      return static_cast<bool&>(value) ? "true" : "false";
+    case XmlRpcValue::TypeInt:
+      return std::to_string(static_cast<int&>(value));
+    case XmlRpcValue::TypeDouble:
+      return numberText(static_cast<double&>(value));
+    case XmlRpcValue::TypeString:
+      return static_cast<std::string&>(value);
+    default:
+      throw ParameterError("The parameter " + path + " is a list or binary data; a number, true, false or a text is wanted.");
+  }
+}
+
+std::vector<std::string> readParts(XmlRpcValue& value)
+{
+  std::vector<std::string> parts;
+  if (value.getType() == XmlRpcValue::TypeString)
+    parts.push_back(static_cast<std::string&>(value));
+  else if (value.getType() == XmlRpcValue::TypeArray)
+    for (int i = 0; i < value.size(); ++i)
+    {
+      if (value[i].getType() != XmlRpcValue::TypeString)
+        throw ParameterError("Entry " + std::to_string(i) + " of the parameter parts is not a text; part directories are wanted.");
+      parts.push_back(static_cast<std::string&>(value[i]));
+    }
+  else
+    throw ParameterError("The parameter parts is neither a text nor a list; it must name the directories of the parts.");
+  return parts;
+}
+
+void checkTogether(const NodeParameters& parameters)
+{
+  if (parameters.parts.empty())
+    throw ParameterError("The parameter parts is missing or empty; it must name at least one directory with a part.yaml.");
+  if (parameters.bin.empty() && !parameters.bin_frame.empty())
+    throw ParameterError("The parameter bin_frame is " + parameters.bin_frame +
+                         ", but bin is empty; the bin's size is read from the file that bin names.");
+}
+}  // namespace
+
+void NodeParameters::visit(bin_picking::ParameterVisitor& v)
+{
+  v.field({"preset", "", "speed against completeness; the values below `detector` change it in detail"}, preset,
+          std::vector<std::string>{"paper", "fast", "accurate"});
+  v.field({"model_cache", "", "directory where trained models are kept; empty: bin_picking_models in the ROS home"}, model_cache,
+          std::vector<std::string>{});
+  v.field({"bin", "", "YAML file with pose and size of the bin; empty: parts are searched everywhere"}, bin,
+          std::vector<std::string>{});
+  v.field({"bin_frame", "", "tf frame of the bin (middle of the inner floor, z up); replaces the pose in the file"}, bin_frame,
+          std::vector<std::string>{});
+  v.field({"gripper", "", "YAML file with the gripper's opening and boxes"}, gripper, std::vector<std::string>{});
+  v.field({"output_frame", "", "frame of all results; empty: the frame of the cloud"}, output_frame, std::vector<std::string>{});
+  v.field({"tf_prefix", "", "put before the names of the published tf frames; keeps two detectors apart"}, tf_prefix,
+          std::vector<std::string>{});
+  v.field({"tf_timeout", "s", "how long a transform at the cloud's time is waited for", 0, 60}, tf_timeout);
+  v.field({"max_age", "s", "oldest cloud that USE_LATEST takes when the request does not say", 0, 86400}, max_age);
+  v.field({"cloud_timeout", "s", "how long WAIT_NEW waits for a cloud", 0, 3600}, cloud_timeout);
+  v.field({"deadline", "s", "time for a whole request when it does not say; 0: none", 0, 3600}, deadline);
+  v.field({"process", "", "on_demand: clouds are processed when the service asks; continuous: all the time"}, process,
+          {{"on_demand", ProcessMode::OnDemand}, {"continuous", ProcessMode::Continuous}});
+  v.group("training", training);
+  v.group("detector", detector);
+  v.group("grasping", grasping);
+}
+
+std::vector<std::pair<std::string, std::string>> flatten(XmlRpcValue tree, const std::string& prefix)
+{
+  std::vector<std::pair<std::string, std::string>> leaves;
+  for (auto& [name, value] : tree)
+  {
+    const std::string path = prefix + name;
+    if (value.getType() != XmlRpcValue::TypeStruct)
+    {
+      leaves.emplace_back(path, scalarText(value, path));
+      continue;
+    }
+    const auto nested = flatten(value, path + "/");
+    leaves.insert(leaves.end(), nested.begin(), nested.end());
+  }
+  return leaves;
+}
+
+NodeParameters parseNodeParameters(XmlRpcValue tree)
+{
+  NodeParameters parameters;
+  const auto visit = bin_picking::visitor(parameters);
+  XmlRpcValue rest;
+  rest.begin();  // makes it a struct, also if nothing is left
+  for (auto& [name, value] : tree)
+  {
+    if (name == "parts")
+      parameters.parts = readParts(value);
+    else if (name == "preset")
+      bin_picking::setParameter(visit, name, scalarText(value, name));
+    else if (FOREIGN.count(name) == 0)
+      rest[name] = value;
+  }
+  parameters.detector = bin_picking::DetectorParameters::preset(parameters.preset);
+  for (const auto& [path, text] : flatten(rest))
+    bin_picking::setParameter(visit, path, text);
+  checkTogether(parameters);
+  return parameters;
+}
+
+NodeParameters readNodeParameters(const ros::NodeHandle& private_nh)
+{
+  XmlRpcValue tree;
+  if (!ros::param::get(private_nh.getNamespace(), tree) || tree.getType() != XmlRpcValue::TypeStruct)
+    throw ParameterError("There are no parameters below " + private_nh.getNamespace() + "; at least parts must be set.");
+  return parseNodeParameters(tree);
+}
+}  // namespace bin_picking_ros
