@@ -27,9 +27,14 @@ struct Symmetry
 
   bool trivial() const { return discrete.size() == 1 && !continuous; }
 
-  /// All symmetric rotations, the continuous axis sampled at `steps` angles.
+  /// All symmetric rotations, the identity first, the continuous axis sampled at `steps` angles.
+  /// \throws ParameterError steps < 1
   std::vector<Pose> sampled(int steps) const;
 };
+
+/// The finite group that the rotations generate, the identity first. Elements closer than 0.1 degrees and 1 um are one.
+/// \throws ParameterError more than 120 elements (no finite rotation group of a part is larger; an axis or order is wrong)
+std::vector<Pose> closeUnderComposition(const std::vector<Pose>& generators);
 
 /// The representative of T's symmetry class that is nearest in rotation to `reference`.
 Pose nearestEquivalent(const Pose& T_camera_object, const Pose& reference, const Symmetry& symmetry);
@@ -65,4 +70,8 @@ struct PartDefinition
 /// \throws FileError missing file; unknown key (with "did you mean"); no unit; a mistyped number; a grasp without id; ...
 ///   with the line
 PartDefinition loadPart(const std::string& path);
+
+/// \param size bounding box of the part's mesh, metres
+/// \throws FileError it is not the expected_size of part.yaml (1 % or 0.5 mm): the mesh or its unit is a wrong one
+void checkExpectedSize(const PartDefinition& definition, const Eigen::Vector3d& size);
 }  // namespace bin_picking

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <cmath>
+#include <set>
+
+#include "part_file.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+constexpr double MAX_TRAVEL = 1.0;  // metres, of an approach or a retreat
+
+Eigen::Matrix3d rotationFromRpy(const Eigen::Vector3d& rpy_deg)
+{
+  const Eigen::Vector3d rpy = rpy_deg * M_PI / 180;
+  return (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+/// Z = approach, Y = closing.
+Eigen::Matrix3d rotationFromDirections(const YamlMap& yaml)
+{
+  constexpr double MAX_SKEW = 0.02;  // sine: about 1 degree, a hand-written number of two digits
+  const Eigen::Vector3d approach = yaml.direction("approach");
+  const Eigen::Vector3d closing = yaml.direction("closing");
+  if (std::abs(approach.dot(closing)) > MAX_SKEW)
+    yaml.fail("closing", "'closing' must be at a right angle to 'approach', but the angle is " +
+                             std::to_string(std::acos(approach.dot(closing)) * 180 / M_PI) + " degrees");
+  Eigen::Matrix3d R;
+  R.col(2) = approach;
+  R.col(0) = closing.cross(approach).normalized();
+  R.col(1) = R.col(2).cross(R.col(0));
+  return R;
+}
+
+Eigen::Matrix3d readRotation(const YamlMap& yaml)
+{
+  const bool by_directions = yaml.has("approach") || yaml.has("closing");
+  if (by_directions == yaml.has("rpy_deg"))
+    yaml.fail("rpy_deg", "a grasp needs its orientation once: either 'approach' and 'closing', or 'rpy_deg'");
+  return by_directions ? rotationFromDirections(yaml) : rotationFromRpy(yaml.vector("rpy_deg", ""));
+}
+
+double readLength(const YamlMap& yaml, const std::string& key, double value, double max)
+{
+  if (!(value >= 0 && value <= max))
+    yaml.fail(
+        key, "'" + key + "' is " + std::to_string(value) + " m, but it must lie in [0, " + std::to_string(max) + "] m");
+  return value;
+}
+
+GraspDefinition readGrasp(const YamlMap& yaml)
+{
+  yaml.allowKeys({"id", "position", "rpy_deg", "approach", "closing", "width", "opening", "approach_distance",
+                  "retreat_distance", "priority", "symmetric"});
+  GraspDefinition grasp;
+  grasp.id = yaml.text("id");
+  grasp.T_object_tip.linear() = readRotation(yaml);
+  grasp.T_object_tip.translation() = yaml.vector("position", "m");
+  grasp.width = readLength(yaml, "width", yaml.number("width", "m"), MAX_TRAVEL);
+  grasp.opening = readLength(yaml, "opening", yaml.number("opening", "m"), MAX_TRAVEL);
+  if (grasp.width > grasp.opening)
+    yaml.fail("width", "the grasp '" + grasp.id + "' holds at a 'width' of " + std::to_string(grasp.width) +
+                           " m but comes with an 'opening' of " + std::to_string(grasp.opening) +
+                           " m; the opening must be at least the width");
+  grasp.approach =
+      readLength(yaml, "approach_distance", yaml.number("approach_distance", "m", grasp.approach), MAX_TRAVEL);
+  grasp.retreat = readLength(yaml, "retreat_distance", yaml.number("retreat_distance", "m", grasp.retreat), MAX_TRAVEL);
+  grasp.priority = yaml.integer("priority", grasp.priority);
+  grasp.symmetric = yaml.flag("symmetric", grasp.symmetric);
+  return grasp;
+}
+}  // namespace
+
+std::vector<GraspDefinition> readGrasps(const YamlMap& part)
+{
+  std::vector<GraspDefinition> grasps;
+  std::set<std::string> ids;
+  for (const YamlMap& entry : part.list("grasps"))
+  {
+    grasps.push_back(readGrasp(entry));
+    if (!ids.insert(grasps.back().id).second)
+      entry.fail("id", "the grasp id '" + grasps.back().id + "' is used twice; ids must differ");
+  }
+  return grasps;
+}
+}  // namespace bin_picking
