@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_picking_perception/model/feature_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "analytic_surfaces.hpp"
+#include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/model/curvature_classes.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+OrientedPoints cloudWithCurvature(std::size_t count)
+{
+  OrientedPoints points = test::torus(0.04, 0.015, count);
+  for (const auto& p : points.points)
+    points.curvature.push_back(100 * p.x() / 0.055f);
+  return points;
+}
+
+FeatureQuantizer quantizerFor(double step, int curvature_bins)
+{
+  FeatureQuantizer q;
+  q.distance_step = step;
+  q.distance_bins = static_cast<int>(0.12 / step);
+  q.curvature_bins = curvature_bins;
+  q.curvature_min = -100;
+  q.curvature_step = 200.0 / curvature_bins;
+  return q;
+}
+
+TEST(PairFeature, equationFiveByHand)
+{
+  const Eigen::Vector3f p1(0, 0, 0), p2(0.03f, 0, 0.04f), n1(0, 0, 1), n2(1, 0, 0);
+  const PairFeature f = pairFeature(p1, n1, 5, p2, n2, -7);
+  EXPECT_NEAR(f.distance, 0.05, 1e-7);
+  EXPECT_NEAR(f.angle_n1_d, std::acos(0.8), 1e-6);
+  EXPECT_NEAR(f.angle_n2_d, std::acos(0.6), 1e-6);
+  EXPECT_NEAR(f.angle_n1_n2, M_PI / 2, 1e-6);
+  EXPECT_EQ(f.q1, 5);
+  EXPECT_EQ(f.q2, -7);
+}
+
+TEST(PairFeature, isAsymmetricAndInvariant)
+{
+  std::mt19937 random(7);
+  const OrientedPoints points = test::torus(0.04, 0.015, 40);
+  const OrientedPoints moved = transformed(points, test::randomPose(random, 0.3));
+  for (std::size_t i = 0; i + 1 < points.size(); ++i)
+  {
+    const auto f = pairFeature(points.points[i], points.normals[i], 1, points.points[i + 1], points.normals[i + 1], 2);
+    const auto g = pairFeature(moved.points[i], moved.normals[i], 1, moved.points[i + 1], moved.normals[i + 1], 2);
+    const auto back = pairFeature(points.points[i + 1], points.normals[i + 1], 2, points.points[i], points.normals[i], 1);
+    EXPECT_NEAR(f.distance, g.distance, 1e-6);
+    EXPECT_NEAR(f.angle_n1_d, g.angle_n1_d, 1e-4);
+    EXPECT_NEAR(f.angle_n2_d, g.angle_n2_d, 1e-4);
+    EXPECT_NEAR(f.angle_n1_n2, g.angle_n1_n2, 1e-4);
+    EXPECT_NEAR(back.angle_n1_d, M_PI - f.angle_n2_d, 1e-4);  // the direction turns round
+    EXPECT_EQ(back.q1, 2);
+  }
+}
+
+TEST(PairFeature, localFramePutsNormalOnXAndSecondPointOnTheHalfPlane)
+{
+  std::mt19937 random(9);
+  for (int i = 0; i < 200; ++i)
+  {
+    const Eigen::Vector3f p = (0.2 * test::unitVector(random)).cast<float>();
+    const Eigen::Vector3f q = (0.2 * test::unitVector(random)).cast<float>();
+    Eigen::Vector3f n = test::unitVector(random).cast<float>();
+    if (i == 0)
+      n = Eigen::Vector3f::UnitX();
+    if (i == 1)
+      n = -Eigen::Vector3f::UnitX();
+    const Eigen::Isometry3f T = alignToLocalFrame(p, n);
+    EXPECT_LT((T * p).norm(), 1e-6f);
+    EXPECT_LT((T.linear() * n - Eigen::Vector3f::UnitX()).norm(), 1e-5f);
+    EXPECT_NEAR(T.linear().determinant(), 1, 1e-5);
+    const Eigen::Vector3f t = Eigen::AngleAxisf(alphaInLocalFrame(T * q), Eigen::Vector3f::UnitX()) * (T * q);
+    EXPECT_NEAR(t.z(), 0, 1e-6);
+    EXPECT_GE(t.y(), 0);
+  }
+}
+
+TEST(FeatureTable, holdsExactlyThePairsOfBruteForce)
+{
+  const OrientedPoints points = cloudWithCurvature(150);
+  for (const int curvature_bins : {1, 5})
+  {
+    const FeatureQuantizer q = quantizerFor(0.003, curvature_bins);
+    std::vector<std::int8_t> classes(points.size());
+    for (std::size_t i = 0; i < classes.size(); ++i)
+      classes[i] = static_cast<std::int8_t>(i % 3 - 1);
+    const FeatureTable table(points, classes, {}, 0, q, 0.005, Executor(2));
+
+    std::map<std::uint32_t, std::multiset<std::uint32_t>> expected;
+    std::size_t num_pairs = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (std::size_t j = 0; j < points.size(); ++j)
+      {
+        const auto f = pairFeature(points.points[i], points.normals[i], points.curvature[i], points.points[j],
+                                   points.normals[j], points.curvature[j]);
+        if (i == j || f.distance < 0.005f || q.geometricKey(f) < 0)
+          continue;
+        const float alpha = alphaInLocalFrame(alignToLocalFrame(points.points[i], points.normals[i]) * points.points[j]);
+        const auto key = q.key(q.geometricKey(f), q.curvatureBin(f.q1), q.curvatureBin(f.q2));
+        expected[key].insert(TableEntry::make(static_cast<std::uint32_t>(i), classes[i] * classes[j] == -1, toTurnFraction(alpha)).bits);
+        ++num_pairs;
+      }
+    EXPECT_EQ(table.numEntries(), num_pairs);
+    EXPECT_EQ(table.numKeys(), expected.size());
+    for (const auto& [key, entries] : expected)
+    {
+      const auto slot = table.find(key);
+      std::multiset<std::uint32_t> found;
+      for (std::uint32_t i = 0; i < slot.count; ++i)
+        found.insert(table.entries()[slot.begin + i].bits);
+      EXPECT_EQ(found, entries);
+      EXPECT_EQ(table.find(key + 1).count > 0, expected.count(key + 1) > 0);
+    }
+  }
+}
+
+TEST(FeatureTable, storesOnlyPairsThatOneViewSees)
+{
+  const OrientedPoints points = cloudWithCurvature(60);
+  std::vector<std::uint64_t> visibility(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    visibility[i] = i % 2 ? 1u : 2u;
+  const FeatureQuantizer q = quantizerFor(0.003, 1);
+  const std::vector<std::int8_t> none(points.size(), 0);
+  const FeatureTable all(points, none, {}, 0, q, 0, Executor(1));
+  const FeatureTable half(points, none, visibility, 1, q, 0, Executor(1));
+  EXPECT_EQ(all.numEntries(), 60u * 59u);
+  EXPECT_EQ(half.numEntries(), 2u * 30u * 29u);
+}
+
+TEST(FeatureTable, entryKeepsItsThreeFieldsApart)
+{
+  const auto entry = TableEntry::make(32767, true, 65535);
+  EXPECT_EQ(entry.reference(), 32767u);
+  EXPECT_TRUE(entry.weighted());
+  EXPECT_EQ(entry.alpha(), 65535);
+  EXPECT_FALSE(TableEntry::make(5, false, 1).weighted());
+}
+
+TEST(FeatureTable, refusesWhatDoesNotFit)
+{
+  OrientedPoints many = test::sphere(0.1, FeatureTable::MAX_REFERENCES + 1);
+  const std::vector<std::int8_t> classes(many.size(), 0);
+  EXPECT_THROW(FeatureTable(many, classes, {}, 0, quantizerFor(0.003, 1), 0, Executor(1)), ParameterError);
+  const OrientedPoints few = cloudWithCurvature(10);
+  EXPECT_THROW(FeatureTable(few, std::vector<std::int8_t>(10, 0), {}, 0, quantizerFor(1e-5, 64), 0, Executor(1)), ParameterError);
+}
+
+TEST(FeatureQuantizer, clampsAnglesAndCurvatureButNotDistance)
+{
+  const FeatureQuantizer q = quantizerFor(0.003, 4);
+  PairFeature f{0.01f, static_cast<float>(M_PI), 0, 0, 0, 0};
+  EXPECT_GE(q.geometricKey(f), 0);
+  f.distance = 0.2f;
+  EXPECT_EQ(q.geometricKey(f), -1);
+  EXPECT_EQ(q.curvatureBin(-1e6f), 0);
+  EXPECT_EQ(q.curvatureBin(1e6f), 3);
+  EXPECT_EQ(q.curvatureBin(0.001f), 2);
+}
+
+TEST(CurvatureClasses, splitThreeHeapsOfAHistogram)
+{
+  std::vector<float> curvature;
+  for (int i = 0; i < 300; ++i)
+  {
+    curvature.push_back(1 + 0.01f * static_cast<float>(i % 7));
+    curvature.push_back(-20 - 0.01f * static_cast<float>(i % 5));
+    curvature.push_back(60 + 0.01f * static_cast<float>(i % 3));
+  }
+  curvature.push_back(NAN);
+  const CurvatureClasses classes = classesFromHistogram(curvature);
+  EXPECT_EQ(classes.classOf(1), -1);
+  EXPECT_EQ(classes.classOf(-20), 0);
+  EXPECT_EQ(classes.classOf(60), 1);
+  EXPECT_EQ(classes.classOf(NAN), 0);
+}
+
+TEST(CurvatureClasses, uniformCurvatureWeighsNothing)
+{
+  const CurvatureClasses classes = classesFromHistogram(std::vector<float>(100, 0.f));
+  EXPECT_EQ(classes.classOf(0.f), 0);
+}
+
+TEST(CurvatureBins, oneBinWhereCurvatureDoesNotVary)
+{
+  FeatureQuantizer q;
+  chooseCurvatureBins(q, std::vector<float>(100, 33.3f), 0, 100);
+  EXPECT_EQ(q.curvature_bins, 1);
+  std::vector<float> spread;
+  for (int i = 0; i <= 1000; ++i)
+    spread.push_back(static_cast<float>(i - 500) / 10);
+  chooseCurvatureBins(q, spread, 0, 100);
+  EXPECT_EQ(q.curvature_bins, AUTOMATIC_CURVATURE_BINS);
+  chooseCurvatureBins(q, spread, 25, 100);
+  EXPECT_EQ(q.curvature_bins, 4);
+  EXPECT_EQ(q.curvature_min, -50);
+}
+}  // namespace
+}  // namespace bin_picking

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <gtest/gtest.h>
+
+#include "bin_picking_perception/matching/clustering.hpp"
+#include "bin_picking_perception/matching/voting.hpp"
+#include "bin_picking_perception/refinement/icp.hpp"
+#include "bin_picking_perception/refinement/verification.hpp"
+#include "hand_made_model.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+constexpr double LEAF = 0.004;
+
+OrientedPoints sceneOf(const TrainedModel& model, const OrientedPoints& surface, const Pose& T)
+{
+  const TrainingParameters& p = model.parameters;
+  return resampleSurface(transformed(surface, T), {p.leaf, p.normal_radius, p.curvature_measure, p.curvature_radius}, Executor(1));
+}
+
+class AnyFeature : public testing::TestWithParam<FeatureKind>
+{
+};
+
+TEST_P(AnyFeature, recoversAnyRotationAndAnyTranslation)
+{
+  const TrainedModel model = test::modelOf(test::lBlock(0.001, 1), LEAF, GetParam());
+  const OrientedPoints other_sampling = test::lBlock(0.001, 2);
+  std::mt19937 random(11);
+  for (int trial = 0; trial < 8; ++trial)
+  {
+    const Pose T = test::randomPose(random, 0.6);
+    const OrientedPoints scene = sceneOf(model, other_sampling, T);
+    VotingParameters voting;
+    voting.reference_share = 0.2;
+    const auto references = chooseReferences(test::everyIndex(scene.size()), voting);
+    const auto votes = voteForPoses(model, scene, {}, references, voting, Deadline(), Executor(2));
+    const auto clusters = clusterPoses(votes.hypotheses, model, {});
+    ASSERT_FALSE(clusters.empty());
+    const Pose& found = clusters.front().T_camera_object;
+    // Votes know alpha to a step of 12 degrees and points to a leaf; the mean of the cluster is better than either.
+    EXPECT_LT((found * model.center - T * model.center).norm(), LEAF) << "trial " << trial;
+    EXPECT_LT(test::rotationError(found, T), 0.12) << "trial " << trial;
+    EXPECT_NEAR(found.linear().determinant(), 1, 1e-9);
+    EXPECT_LT((found.linear() * found.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+
+    IcpParameters icp;
+    icp.max_iterations = 60;
+    const IcpResult refined = icpPointToPoint(model.surface, scene, found, 2 * LEAF, icp);
+    EXPECT_LT((refined.T_camera_object * model.center - T * model.center).norm(), 0.15 * LEAF);
+    EXPECT_LT(test::rotationError(refined.T_camera_object, T), 0.02);
+    EXPECT_GT(matchingRate(model.surface, refined.T_camera_object, scene.points, 0.005), 0.999);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Features, AnyFeature,
+                         testing::Values(FeatureKind::Ppf, FeatureKind::CurPpfUnweighted, FeatureKind::CurPpf));
+
+TEST(Voting, sameBitsForAnyNumberOfThreads)
+{
+  const TrainedModel model = test::modelOf(test::lBlock(0.0015, 1), LEAF, FeatureKind::CurPpf);
+  const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
+  const VotingParameters voting;
+  const auto references = chooseReferences(test::everyIndex(scene.size()), voting);
+  const auto one = voteForPoses(model, scene, {}, references, voting, Deadline(), Executor(1));
+  const auto four = voteForPoses(model, scene, {}, references, voting, Deadline(), Executor(4));
+  ASSERT_EQ(one.hypotheses.size(), four.hypotheses.size());
+  EXPECT_EQ(one.statistics.votes, four.statistics.votes);
+  for (std::size_t i = 0; i < one.hypotheses.size(); ++i)
+    EXPECT_TRUE(one.hypotheses[i].T_camera_object.matrix() == four.hypotheses[i].T_camera_object.matrix());
+}
+
+TEST(Voting, curvatureSavesVotes)
+{
+  const auto votesOf = [](FeatureKind feature) {
+    const TrainedModel model = test::modelOf(test::lBlock(0.0015, 1), LEAF, feature);
+    const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
+    return voteForPoses(model, scene, {}, chooseReferences(test::everyIndex(scene.size()), {}), {}, Deadline(), Executor(2))
+        .statistics.votes;
+  };
+  EXPECT_LT(2 * votesOf(FeatureKind::CurPpf), votesOf(FeatureKind::Ppf));
+}
+
+TEST(Voting, weightOfEquationEightAddsUp)
+{
+  const TrainedModel model = test::modelOf(test::lBlock(0.0015, 1), LEAF, FeatureKind::CurPpf);
+  const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
+  const auto total = [&](int weight) {
+    VotingParameters voting;
+    voting.weight = weight;
+    double sum = 0;
+    for (const auto& h : voteForPoses(model, scene, {}, {5, 50, 100}, voting, Deadline(), Executor(1)).hypotheses)
+      sum = std::max(sum, h.votes);
+    return sum;
+  };
+  EXPECT_GT(total(5), total(1));
+}
+
+TEST(Voting, unknownCurvatureMeetsEveryBin)
+{
+  const TrainedModel model = test::modelOf(test::lBlock(0.0015, 1), LEAF, FeatureKind::CurPpfUnweighted);
+  const TrainedModel plain = test::modelOf(test::lBlock(0.0015, 1), LEAF, FeatureKind::Ppf);
+  const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
+  const std::vector<std::uint8_t> unknown(scene.size(), 0);
+  const auto wild = voteForPoses(model, scene, unknown, {3, 33, 66}, {}, Deadline(), Executor(1));
+  const auto four_dimensional = voteForPoses(plain, scene, {}, {3, 33, 66}, {}, Deadline(), Executor(1));
+  EXPECT_EQ(wild.statistics.votes, four_dimensional.statistics.votes);
+}
+
+TEST(Voting, longBucketsAreSkipped)
+{
+  const TrainedModel model = test::modelOf(test::lBlock(0.0015, 1), LEAF, FeatureKind::Ppf);
+  const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
+  VotingParameters capped;
+  capped.max_bucket = 50;
+  const auto all = voteForPoses(model, scene, {}, {3, 33}, {}, Deadline(), Executor(1)).statistics;
+  const auto few = voteForPoses(model, scene, {}, {3, 33}, capped, Deadline(), Executor(1)).statistics;
+  EXPECT_LT(few.votes, all.votes);
+  EXPECT_LE(few.votes, few.pairs * 50);
+}
+
+TEST(Voting, passedDeadlineIsPartialAndHasNoPoses)
+{
+  const TrainedModel model = test::modelOf(test::lBlock(0.002, 1), LEAF, FeatureKind::Ppf);
+  const OrientedPoints scene = sceneOf(model, test::lBlock(0.002, 2), Pose::Identity());
+  Deadline deadline(1e-9);
+  while (!deadline.passed())
+  {
+  }
+  const auto votes = voteForPoses(model, scene, {}, {1, 2, 3}, {}, deadline, Executor(1));
+  EXPECT_TRUE(votes.partial);
+  EXPECT_TRUE(votes.hypotheses.empty());
+}
+
+TEST(ChooseReferences, drawsTheAskedShareEvenly)
+{
+  VotingParameters voting;
+  voting.reference_share = 0.2;
+  voting.min_references = 1;
+  const auto references = chooseReferences(test::everyIndex(1000), voting);
+  ASSERT_EQ(references.size(), 200u);
+  for (std::size_t i = 0; i < references.size(); ++i)
+    EXPECT_EQ(references[i], static_cast<int>(5 * i));
+  voting.min_references = 50;
+  EXPECT_EQ(chooseReferences(test::everyIndex(30), voting).size(), 30u);
+  EXPECT_TRUE(chooseReferences({}, voting).empty());
+}
+
+TEST(AveragePoses, isRigidAndBetweenItsPoses)
+{
+  std::mt19937 random(5);
+  const Pose T = test::randomPose(random, 0.5);
+  const Eigen::Vector3d center(0.02, -0.01, 0.03);
+  std::vector<Pose> poses;
+  for (const double angle : {-0.1, 0.1})
+  {
+    Pose turned = T;
+    turned.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix() * T.linear();
+    turned.translation() = T * center - turned.linear() * center;  // turned about the centre
+    poses.push_back(turned);
+  }
+  const Pose mean = averagePoses(poses, {1, 1}, center);
+  EXPECT_LT((mean * center - T * center).norm(), 1e-12);
+  EXPECT_LT(test::rotationError(mean, T), 1e-9);
+  EXPECT_NEAR(mean.linear().determinant(), 1, 1e-12);
+}
+
+TEST(ClusterPoses, joinsWhatIsNearAndSymmetricAndKeepsTheRestApart)
+{
+  TrainedModel model;
+  model.diameter = 0.1;
+  Pose half_turn = Pose::Identity();
+  half_turn.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  std::mt19937 random(6);
+  const Pose T = test::randomPose(random, 0.5);
+  Pose near = T;
+  near.translation().x() += 0.004;
+  Pose far = T;
+  far.translation().x() += 0.2;
+  const std::vector<Hypothesis> hypotheses = {{T, 10, 0, 0}, {near, 8, 1, 0}, {T * half_turn, 6, 2, 0}, {far, 12, 3, 0}};
+
+  EXPECT_EQ(clusterPoses(hypotheses, model, {}).size(), 3u);
+  model.symmetry.discrete.push_back(half_turn);
+  const auto clusters = clusterPoses(hypotheses, model, {});
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_EQ(clusters[0].members, 3);
+  EXPECT_DOUBLE_EQ(clusters[0].votes, 24);
+  EXPECT_LT(test::rotationError(clusters[0].T_camera_object, T), 1e-6);
+  EXPECT_NEAR((clusters[0].T_camera_object.translation() - T.translation()).norm(), 0.004 * 8 / 24, 1e-9);
+}
+
+TEST(IcpPointToPoint, isExactOnItsOwnPointsAndRigidOnPlanes)
+{
+  const OrientedPoints model = test::lBlock(0.002, 1);
+  std::mt19937 random(8);
+  const Pose T = test::randomPose(random, 0.4);
+  Pose start = T;
+  start.translation() += 0.001 * test::unitVector(random);
+  IcpParameters icp;
+  icp.max_iterations = 100;
+  const IcpResult result = icpPointToPoint(model, transformed(model, T), start, 0.01, icp);
+  EXPECT_TRUE(result.converged);
+  EXPECT_LT((result.T_camera_object.translation() - T.translation()).norm(), 1e-5);
+  EXPECT_LT(result.rms, 1e-6);
+
+  const OrientedPoints flat = test::plane(0.05, 400);
+  const IcpResult on_plane = icpPointToPoint(flat, transformed(flat, T), T, 0.01, icp);
+  EXPECT_NEAR(on_plane.T_camera_object.linear().determinant(), 1, 1e-9) << "a reflection fits a plane as well, but is no pose";
+}
+
+TEST(IcpPointToPoint, withoutCorrespondencesThePoseStaysAndRmsIsNan)
+{
+  const OrientedPoints model = test::lBlock(0.002, 1);
+  Pose far = Pose::Identity();
+  far.translation().x() = 1;
+  const IcpResult result = icpPointToPoint(model, model, far, 0.01, {});
+  EXPECT_TRUE(std::isnan(result.rms));
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_TRUE(result.T_camera_object.matrix() == far.matrix());
+}
+
+TEST(MatchingRate, countsTheShareWithinTheDistance)
+{
+  const OrientedPoints model = test::plane(0.1, 20000);
+  std::vector<Eigen::Vector3f> scene = {{0, 0, 0.001f}, {0, 0, 0.004f}, {0, 0, 0.006f}, {0, 0, 0.1f}};
+  EXPECT_DOUBLE_EQ(matchingRate(model, Pose::Identity(), scene, 0.005), 0.5);
+  EXPECT_DOUBLE_EQ(matchingRate(model, Pose::Identity(), {}, 0.005), 0);
+}
+}  // namespace
+}  // namespace bin_picking
