@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_picking_perception/common/parameters.hpp"
+
+#include <iostream>
+
+#include "bin_picking_perception/detector_parameters.hpp"
+#include "bin_picking_perception/model/training_parameters.hpp"
+#include "commands.hpp"
+#include "demo_scene.hpp"
+
+namespace bin_picking::tools
+{
+namespace
+{
+void print(const Arguments& arguments, const VisitFunction& visit)
+{
+  std::cout << (arguments.has("--markdown") ? toMarkdown(visit) : toYaml(visit));
+}
+
+void parameters(const Arguments& arguments)
+{
+  const std::string command = arguments.value("--of", "detect");
+  if (command != "detect" && arguments.has("--preset"))
+    throw UsageError("--preset goes with the parameters of detect; those of " + command + " have none");
+  DetectorParameters detector = DetectorParameters::preset(arguments.value("--preset", "fast"));
+  TrainingParameters training;
+  simulation::DemoSceneParameters scene;
+  if (command == "detect")
+    print(arguments, visitor(detector));
+  else if (command == "train")
+    print(arguments, visitor(training));
+  else if (command == "demo-scene")
+    print(arguments, visitor(scene));
+  else
+    throw UsageError("--of is '" + command + "', but it must be one of: detect, train, demo-scene");
+}
+}  // namespace
+
+Command parametersCommand()
+{
+  return {{"parameters",
+           "Lists every parameter with its value, unit, range and effect; as YAML that --config reads, or as a table.",
+           {},
+           {{"--preset", "NAME", Values::One, "paper, fast or accurate (default fast)"},
+            {"--of", "COMMAND", Values::One, "detect (default), train or demo-scene"},
+            {"--markdown", "", Values::None, "a Markdown table in place of YAML"}},
+           "parameters --preset accurate > accurate.yaml"},
+          parameters};
+}
+}  // namespace bin_picking::tools

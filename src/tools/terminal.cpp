@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "terminal.hpp"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+#include "bin_picking_perception/common/error.hpp"
+
+namespace bin_picking::tools
+{
+namespace
+{
+constexpr const char* WIPE_LINE = "\r\033[K";
+}
+
+Progress::Progress() : on_terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() { finish(); }
+
+void Progress::finish()
+{
+  if (on_terminal_)
+    std::cerr << WIPE_LINE << std::flush;
+}
+
+void Progress::show(const std::string& stage)
+{
+  if (on_terminal_)
+    std::cerr << WIPE_LINE << "[" << fixed(watch_.seconds(), 1) << " s] " << stage << " ..." << std::flush;
+}
+
+std::string fixed(double value, int digits)
+{
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(digits) << value;
+  return out.str();
+}
+
+std::string readText(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf()))
+    throw FileError("the file '" + path + "' is missing, empty or cannot be read; check the path");
+  return text.str();
+}
+
+void writeText(const std::string& path, const std::string& text)
+{
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file)
+    throw FileError("cannot write '" + path + "'; check that the folder exists and has room");
+}
+}  // namespace bin_picking::tools
