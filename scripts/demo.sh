@@ -1,0 +1,101 @@
+#!/usr/bin/env bash
+# The whole loop without hardware: fills a virtual bin, finds the parts on the command line and through the ROS nodes, asks
+# for the best grasp and holds the answer against the truth. Opens rviz where there is a display.
+# Usage: scripts/demo.sh [OPTION...]
+#   --part DIR               folder with part.yaml (default: config/parts/three_way_tube)
+#   --seed N                 another bin (default: 1)
+#   --headless               no rviz, even with a display
+#   --rviz-screenshot FILE   renders rviz on a virtual display into a PNG
+#   BUILD_DIR=DIR            build folder (default: build); the demo's files go to BUILD_DIR/demo
+# Exit code 1 if the part of the best grasp is off by more than 5 mm or 5 degrees.
+set -euo pipefail
+start_dir=$PWD
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source_dir=$PWD
+
+fail() { echo "demo: $*" >&2; exit 1; }
+log() { echo; echo "demo: $*"; }
+absolute() { case "$1" in /*) echo "$1" ;; *) echo "$start_dir/$1" ;; esac; }
+
+part=$source_dir/config/parts/three_way_tube
+seed=1
+screenshot=
+rviz=${DISPLAY:+true}
+while [ $# -gt 0 ]; do
+  case "$1" in
+    -h|--help) sed -n '2,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"; exit 0 ;;
+    --headless) rviz=; shift ;;
+    --part) part=$(absolute "${2:?--part needs a folder}"); shift 2 ;;
+    --seed) seed=${2:?--seed needs a number}; shift 2 ;;
+    --rviz-screenshot) screenshot=$(absolute "${2:?--rviz-screenshot needs a file}"); rviz=; shift 2 ;;
+    *) echo "demo: unknown option '$1'; see scripts/demo.sh --help" >&2; exit 2 ;;
+  esac
+done
+
+build_dir=${BUILD_DIR:-build}
+case "$build_dir" in /*) ;; *) build_dir=$source_dir/$build_dir ;; esac
+scripts/setup.sh
+scripts/build.sh
+out=$build_dir/demo
+scene=$out/scene
+mkdir -p "$out"
+
+set +u  # ROS's setup files read variables that are not set
+# shellcheck disable=SC1091
+. "$build_dir/devel/setup.sh"
+set -u
+# Other python3 than the system's, first on PATH, lack ROS's modules.
+export PATH="$build_dir/devel/lib/bin_picking_perception:/usr/bin:$PATH"
+command -v bin_picking >/dev/null || fail "the build left no bin_picking in $build_dir/devel."
+
+log "a virtual bin, seed $seed"
+bin_picking demo-scene "$part" --seed "$seed" -o "$scene"
+
+log "training and detection on the command line"
+bin_picking train "$part" -o "$out/part.model"
+bin_picking detect --model "$out/part.model" --cloud "$scene/scene.pcd" --bin "$scene/bin.yaml" \
+  --json "$out/detections.json" --image "$out/detections.png"
+
+log "the same through ROS: roslaunch bin_picking_perception demo.launch"
+port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1 ROS_HOME=$out/ros_home
+unset ROS_HOSTNAME
+children=()
+# roslaunch stops its nodes on SIGINT, which shells make background jobs ignore; SIGTERM does the same to it.
+stop() {
+  local pid
+  for pid in "${children[@]}"; do kill -TERM "$pid" 2>/dev/null || true; done
+  for pid in "${children[@]}"; do wait "$pid" 2>/dev/null || true; done
+}
+trap stop EXIT
+roslaunch -p "$port" bin_picking_perception demo.launch scene:="$scene" parts:="$part" rviz:="${rviz:-false}" \
+  >"$out/roslaunch.log" 2>&1 &
+children+=($!)
+
+failed=0
+/usr/bin/python3 scripts/demo_report.py "$scene" "$part" --frame camera || failed=1
+[ $failed -eq 0 ] || echo "demo: the log of the nodes is $out/roslaunch.log" >&2
+
+if [ -n "$screenshot" ]; then
+  log "rviz on a virtual display"
+  screen=77
+  while [ -e "/tmp/.X11-unix/X$screen" ] || [ -e "/tmp/.X$screen-lock" ]; do screen=$((screen + 1)); done
+  XDG_RUNTIME_DIR=$(mktemp -d)
+  export XDG_RUNTIME_DIR DISPLAY=:$screen LIBGL_ALWAYS_SOFTWARE=1 QT_X11_NO_MITSHM=1
+  Xvfb ":$screen" -screen 0 1280x800x24 +extension GLX -nolisten tcp >"$out/xvfb.log" 2>&1 &
+  children+=($!)
+  sleep 2
+  rviz -d config/rviz/bin_picking.rviz --no-stereo >"$out/rviz.log" 2>&1 &
+  children+=($!)
+  # Nothing tells that rviz has drawn everything; a software renderer takes its time with a large cloud.
+  sleep "${RVIZ_SECONDS:-40}"
+  import -window root "$screenshot"
+  echo "demo: $screenshot"
+fi
+
+log "the picture of what was found: $out/detections.png"
+if [ -n "$rviz" ]; then
+  echo "demo: rviz shows the same; Ctrl-C ends"
+  wait "${children[0]}" || true
+fi
+exit $failed
