@@ -52,6 +52,13 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
                                               const Executor& executor,
                                               const std::function<void(const std::string&)>& progress = {});
 
+/// Hash of what a model is asked to be: name, unit, symmetry and every parameter, with the part's own `training:` values.
+/// \throws ParameterError the part's training values are not valid
+std::uint64_t requestHash(const PartDefinition& definition, const TrainingParameters& parameters);
+
+/// Version of the model file's layout; other versions are not read.
+constexpr std::uint32_t MODEL_FILE_VERSION = 1;
+
 /// Binary file: magic, version, hashes, payload, checksum. Written to a temporary name first, then renamed.
 /// \throws FileError cannot be written
 void saveModel(const TrainedModel& model, const std::string& path);
@@ -60,7 +67,8 @@ void saveModel(const TrainedModel& model, const std::string& path);
 std::shared_ptr<const TrainedModel> loadModel(const std::string& path);
 
 /// The model in `path` if it was made from this part and these parameters; trains and saves otherwise.
-/// \param note receives one sentence about why it was trained again, empty if it was not
+/// \param note receives one sentence about why it was trained again (and another if the file could not be written: the
+///   model itself is good), empty if it was not
 std::shared_ptr<const TrainedModel> loadOrTrain(const PartDefinition& definition, const TrainingParameters& parameters,
                                                 const std::string& path, const Executor& executor, std::string& note);
 }  // namespace bin_picking

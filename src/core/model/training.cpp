@@ -45,6 +45,7 @@ OrientedPoints denseSurface(const PartDefinition& definition, TrainedModel& mode
     return points;
   }
   model.mesh = loadMesh(definition.mesh_file, definition.mesh_unit);
+  checkExpectedSize(definition, inspectMesh(model.mesh).size);
   model.diameter = largestDistance(model.mesh.vertices);
   resolve(model.parameters, model.diameter);
   const double spacing = std::min(model.parameters.surface_spacing, model.parameters.leaf / 2) / 2;

@@ -14,7 +14,7 @@ void TrainingParameters::visit(ParameterVisitor& v)
            "distance of the finer surface points for verification and refinement; 0 = half the leaf", 0, 0.05},
           surface_spacing);
   v.field({"seed", "", "seed of the surface sampling; the same seed gives the same model", 0, 2147483647}, seed);
-  v.field({"normal_radius", "m", "radius of the plane fit for normals, on part and scene; 0 = 1.3 leaf", 0, 0.1},
+  v.field({"normal_radius", "m", "radius of the plane fit for normals, on part and scene; 0 = 1.3 leaf", 0, 0.2},
           normal_radius);
   v.field({"feature", "", "Equation 5 with all six dimensions, weighted by Equation 8 or not, or its first four"},
           feature,
@@ -26,7 +26,7 @@ void TrainingParameters::visit(ParameterVisitor& v)
        "Equation 4 (1/m, signed), or the variance of the normals that the published constants fit"},
       curvature_measure,
       {{"mean_curvature", CurvatureMeasure::MeanCurvature}, {"normal_variation", CurvatureMeasure::NormalVariation}});
-  v.field({"curvature_radius", "m", "neighbourhood of the curvature, on part and scene; 0 = 3.3 leaf", 0, 0.2},
+  v.field({"curvature_radius", "m", "neighbourhood of the curvature, on part and scene; 0 = 3.3 leaf", 0, 0.5},
           curvature_radius);
   v.field({"d_dist", "m", "step of the distance in the feature; 0 = 0.6 leaf", 0, 0.1}, d_dist);
   v.field({"d_angle", "rad", "step of the three angles in the feature, and of alpha in the accumulator", 0.02, 1.0},

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "model_payload.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "binary_stream.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+void require(bool condition, const char* what)
+{
+  if (!condition)
+    throw std::runtime_error(what);
+}
+
+void write(BinaryWriter& out, const OrientedPoints& points)
+{
+  out.vectors(points.points);
+  out.vectors(points.normals);
+  out.array(points.curvature);
+}
+
+OrientedPoints readPoints(BinaryReader& in)
+{
+  OrientedPoints points;
+  points.points = in.vectors();
+  points.normals = in.vectors();
+  points.curvature = in.array<float>();
+  require(points.normals.size() == points.size(), "the numbers of points and normals differ");
+  require(points.curvature.empty() || points.curvature.size() == points.size(),
+          "the numbers of points and curvatures differ");
+  return points;
+}
+
+void write(BinaryWriter& out, const Symmetry& symmetry)
+{
+  out.value(static_cast<std::uint64_t>(symmetry.discrete.size()));
+  for (const Pose& element : symmetry.discrete)
+    out.matrix(element.matrix());
+  out.value(static_cast<std::uint8_t>(symmetry.continuous ? 1 : 0));
+  if (symmetry.continuous)
+  {
+    out.matrix(symmetry.continuous->direction);
+    out.matrix(symmetry.continuous->origin);
+  }
+}
+
+Symmetry readSymmetry(BinaryReader& in)
+{
+  Symmetry symmetry;
+  symmetry.discrete.assign(in.count(sizeof(Eigen::Matrix4d)), Pose::Identity());
+  require(!symmetry.discrete.empty(), "the symmetry lacks the identity");
+  for (Pose& element : symmetry.discrete)
+    element.matrix() = in.matrix<Eigen::Matrix4d>();
+  if (in.value<std::uint8_t>() != 0)
+  {
+    const auto direction = in.matrix<Eigen::Vector3d>();
+    symmetry.continuous = Symmetry::Axis{direction, in.matrix<Eigen::Vector3d>()};
+  }
+  return symmetry;
+}
+
+void write(BinaryWriter& out, const TriangleMesh& mesh)
+{
+  out.vectors(mesh.vertices);
+  out.array(mesh.triangles);
+  out.value(static_cast<std::uint64_t>(mesh.repairs.size()));
+  for (const std::string& repair : mesh.repairs)
+    out.text(repair);
+}
+
+TriangleMesh readMesh(BinaryReader& in)
+{
+  TriangleMesh mesh;
+  mesh.vertices = in.vectors();
+  mesh.triangles = in.array<std::array<std::uint32_t, 3>>();
+  for (const auto& triangle : mesh.triangles)
+    require(*std::max_element(triangle.begin(), triangle.end()) < mesh.vertices.size(),
+            "a triangle has a corner that does not exist");
+  mesh.repairs.resize(in.count(sizeof(std::uint64_t)));
+  for (std::string& repair : mesh.repairs)
+    repair = in.text();
+  return mesh;
+}
+
+void write(BinaryWriter& out, const std::vector<ViewTemplate>& views)
+{
+  out.value(static_cast<std::uint64_t>(views.size()));
+  for (const ViewTemplate& view : views)
+  {
+    out.matrix(view.direction);
+    out.value(view.area);
+    out.value(view.contour);
+    out.array(view.visible);
+  }
+}
+
+std::vector<ViewTemplate> readViews(BinaryReader& in, std::size_t num_surface_points)
+{
+  // The smallest view: direction, area, contour and the size of an empty list.
+  std::vector<ViewTemplate> views(in.count(5 * sizeof(float) + sizeof(std::uint64_t)));
+  for (ViewTemplate& view : views)
+  {
+    view.direction = in.matrix<Eigen::Vector3f>();
+    view.area = in.value<float>();
+    view.contour = in.value<float>();
+    view.visible = in.array<std::uint32_t>();
+    for (const std::uint32_t index : view.visible)
+      require(index < num_surface_points, "a view sees a surface point that does not exist");
+  }
+  return views;
+}
+
+void write(BinaryWriter& out, const FeatureQuantizer& q)
+{
+  for (const double step : {q.distance_step, q.angle_step, q.curvature_step, q.curvature_min})
+    out.value(step);
+  for (const int bins : {q.distance_bins, q.angle_bins, q.curvature_bins})
+    out.value(static_cast<std::int32_t>(bins));
+}
+
+FeatureQuantizer readQuantizer(BinaryReader& in)
+{
+  FeatureQuantizer q;
+  for (double* step : {&q.distance_step, &q.angle_step, &q.curvature_step, &q.curvature_min})
+    *step = in.value<double>();
+  for (int* bins : {&q.distance_bins, &q.angle_bins, &q.curvature_bins})
+  {
+    *bins = in.value<std::int32_t>();
+    require(*bins > 0, "the feature table has a dimension without bins");
+  }
+  require(q.distance_step > 0 && q.angle_step > 0 && q.curvature_step > 0,
+          "a step of the feature table is not positive");
+  return q;
+}
+
+std::string parametersText(const TrainingParameters& parameters)
+{
+  TrainingParameters copy = parameters;
+  return toYaml(visitor(copy));
+}
+}  // namespace
+
+/// The parts of a feature table that nobody else needs to see.
+struct ModelFileAccess
+{
+  static void write(BinaryWriter& out, const FeatureTable& table)
+  {
+    bin_picking::write(out, table.quantizer_);
+    out.array(table.slots_);
+    out.array(table.entries_);
+    out.value(static_cast<std::uint64_t>(table.num_keys_));
+    out.value(static_cast<std::uint32_t>(table.shift_));
+  }
+
+  static FeatureTable read(BinaryReader& in, std::size_t num_points)
+  {
+    FeatureTable table;
+    table.quantizer_ = readQuantizer(in);
+    table.slots_ = in.array<FeatureTable::Slot>();
+    table.entries_ = in.array<TableEntry>();
+    table.num_keys_ = static_cast<std::size_t>(in.value<std::uint64_t>());
+    table.shift_ = in.value<std::uint32_t>();
+    check(table, num_points);
+    return table;
+  }
+
+private:
+  /// A search in the table must end and stay within its arrays.
+  static void check(const FeatureTable& table, std::size_t num_points)
+  {
+    require(table.shift_ >= 1 && table.shift_ <= 31 && table.slots_.size() == std::size_t{1} << (32 - table.shift_),
+            "the size of the feature table is not the power of two that it claims");
+    std::size_t num_keys = 0;
+    for (const FeatureTable::Slot& slot : table.slots_)
+    {
+      num_keys += slot.count > 0 ? 1 : 0;
+      require(slot.begin <= table.entries_.size() && slot.count <= table.entries_.size() - slot.begin,
+              "a slot of the feature table points behind its entries");
+    }
+    require(num_keys == table.num_keys_ && num_keys < table.slots_.size(),
+            "the feature table has another number of keys than it claims");
+    for (const TableEntry& entry : table.entries_)
+      require(entry.reference() < num_points, "an entry of the feature table names a point that does not exist");
+  }
+};
+
+std::vector<char> writePayload(const TrainedModel& model)
+{
+  BinaryWriter out;
+  out.text(model.name);
+  out.value(model.mesh_hash);
+  out.value(model.parameter_hash);
+  out.text(parametersText(model.parameters));
+  write(out, model.symmetry);
+  write(out, model.mesh);
+  out.matrix(model.size);
+  out.matrix(model.center);
+  out.value(model.diameter);
+  write(out, model.points);
+  write(out, model.surface);
+  write(out, model.views);
+  out.value(model.classes.low_max);
+  out.value(model.classes.high_min);
+  ModelFileAccess::write(out, model.table);
+  return out.take();
+}
+
+std::shared_ptr<const TrainedModel> readPayload(const char* begin, std::size_t size)
+{
+  BinaryReader in(begin, size);
+  auto model = std::make_shared<TrainedModel>();
+  model->name = in.text();
+  model->mesh_hash = in.value<std::uint64_t>();
+  model->parameter_hash = in.value<std::uint64_t>();
+  setParametersFromYaml(visitor(model->parameters), in.text(), "parameters in the model");
+  model->symmetry = readSymmetry(in);
+  model->mesh = readMesh(in);
+  model->size = in.matrix<Eigen::Vector3d>();
+  model->center = in.matrix<Eigen::Vector3d>();
+  model->diameter = in.value<double>();
+  model->points = readPoints(in);
+  model->surface = readPoints(in);
+  model->views = readViews(in, model->surface.size());
+  model->classes.low_max = in.value<double>();
+  model->classes.high_min = in.value<double>();
+  model->table = ModelFileAccess::read(in, model->points.size());
+  require(in.left() == 0, "there are more data than a model has");
+  return model;
+}
+}  // namespace bin_picking
