@@ -12,9 +12,14 @@ namespace
 {
 constexpr float INF = std::numeric_limits<float>::infinity();
 
+std::size_t indexOf(int column, int row, int columns)
+{
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+}
+
 void cover(PartProfile& profile, int column, int row, float z)
 {
-  const auto i = static_cast<std::size_t>(row * profile.columns + column);
+  const auto i = indexOf(column, row, profile.columns);
   profile.lower[i] = std::min(profile.lower[i], z);
   profile.upper[i] = std::max(profile.upper[i], z);
 }
@@ -69,8 +74,8 @@ std::vector<float> widened(const std::vector<float>& upper, int columns, int row
       for (int r = std::max(0, row - 1); r <= std::min(rows - 1, row + 1); ++r)
         for (int c = std::max(0, column - 1); c <= std::min(columns - 1, column + 1); ++c)
         {
-          float& highest = out[static_cast<std::size_t>(row * columns + column)];
-          highest = std::max(highest, upper[static_cast<std::size_t>(r * columns + c)]);
+          float& highest = out[indexOf(column, row, columns)];
+          highest = std::max(highest, upper[indexOf(c, r, columns)]);
         }
   return out;
 }
@@ -93,7 +98,7 @@ PartProfile profileOf(const TriangleMesh& part, const Eigen::Quaterniond& rotati
   profile.origin = low.head<2>().cast<double>().array() - cell;  // a rim of one column for the widening
   profile.columns = static_cast<int>((high.x() - low.x()) / cell) + 3;
   profile.rows = static_cast<int>((high.y() - low.y()) / cell) + 3;
-  profile.lower.assign(static_cast<std::size_t>(profile.columns * profile.rows), INF);
+  profile.lower.assign(indexOf(0, profile.rows, profile.columns), INF);
   profile.upper.assign(profile.lower.size(), -INF);
   for (Eigen::Vector3f& vertex : vertices)
   {
@@ -110,7 +115,7 @@ HeightMap::HeightMap(double length, double width, double cell)
     : cell_(cell),
       columns_(static_cast<int>(length / cell)),
       rows_(static_cast<int>(width / cell)),
-      height_(static_cast<std::size_t>(columns_ * rows_), 0.0f)
+      height_(indexOf(0, rows_, columns_), 0.0f)
 {}
 
 double HeightMap::restHeight(const PartProfile& profile, int column, int row) const
@@ -118,8 +123,8 @@ double HeightMap::restHeight(const PartProfile& profile, int column, int row) co
   float rest = -INF;
   for (int r = 0; r < profile.rows; ++r)
   {
-    const float* height = &height_[static_cast<std::size_t>((row + r) * columns_ + column)];
-    const float* lower = &profile.lower[static_cast<std::size_t>(r * profile.columns)];
+    const float* height = &height_[indexOf(column, row + r, columns_)];
+    const float* lower = &profile.lower[indexOf(0, r, profile.columns)];
     for (int c = 0; c < profile.columns; ++c)
       rest = std::max(rest, height[c] - lower[c]);
   }
@@ -136,8 +141,8 @@ void HeightMap::add(const PartProfile& profile, int column, int row, double z)
   for (int r = 0; r < profile.rows; ++r)
     for (int c = 0; c < profile.columns; ++c)
     {
-      float& height = height_[static_cast<std::size_t>((row + r) * columns_ + column + c)];
-      const float upper = profile.upper[static_cast<std::size_t>(r * profile.columns + c)];
+      float& height = height_[indexOf(column + c, row + r, columns_)];
+      const float upper = profile.upper[indexOf(c, r, profile.columns)];
       height = std::max(height, static_cast<float>(z) + upper);
     }
 }

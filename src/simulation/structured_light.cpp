@@ -87,7 +87,9 @@ bool lit(const Eigen::Vector3d& p_projector, const DepthRenderer& projector)
   float farthest = 0;
   for (int b = v - 1; b <= v + 1; ++b)
     for (int a = u - 1; a <= u + 1; ++a)
-      farthest = std::max(farthest, projector.depth()[static_cast<std::size_t>(b * projector.width() + a)]);
+      farthest = std::max(farthest,
+                          projector.depth()[static_cast<std::size_t>(b) * static_cast<std::size_t>(projector.width()) +
+                                            static_cast<std::size_t>(a)]);
   return p_projector.z() <= farthest + SHADOW_TOLERANCE;
 }
 }  // namespace

@@ -40,6 +40,7 @@ void applyAssignments(const Arguments& arguments, const VisitFunction& visit)
 std::vector<std::shared_ptr<const TrainedModel>> loadModels(const std::vector<std::string>& paths)
 {
   std::vector<std::shared_ptr<const TrainedModel>> models;
+  models.reserve(paths.size());
   for (const std::string& path : paths)
     models.push_back(loadModel(path));
   return models;

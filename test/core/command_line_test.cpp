@@ -26,15 +26,15 @@ namespace fs = std::filesystem;
 
 const std::string TUBE = std::string(BIN_PICKING_SOURCE_DIR) + "/config/parts/three_way_tube";
 
-struct Run
+struct Outcome
 {
   int exit_code = -1;
   std::string text;  // both streams
 };
 
-Run run(const std::string& arguments)
+Outcome run(const std::string& arguments)
 {
-  Run result;
+  Outcome result;
   FILE* pipe = popen((std::string(BIN_PICKING_EXECUTABLE) + " " + arguments + " 2>&1").c_str(), "r");
   if (!pipe)
     return result;
@@ -48,7 +48,7 @@ Run run(const std::string& arguments)
 
 void expectFailure(const std::string& arguments, int exit_code, const std::vector<std::string>& said)
 {
-  const Run result = run(arguments);
+  const Outcome result = run(arguments);
   EXPECT_EQ(result.exit_code, exit_code) << arguments << "\n" << result.text;
   for (const std::string& words : said)
     EXPECT_NE(result.text.find(words), std::string::npos) << arguments << "\n" << result.text;
@@ -100,23 +100,23 @@ protected:
   }
 
   static fs::path folder_;
-  static Run made_scene_;
-  static Run made_model_;
+  static Outcome made_scene_;
+  static Outcome made_model_;
 };
 
 fs::path CommandLine::folder_;
-Run CommandLine::made_scene_;
-Run CommandLine::made_model_;
+Outcome CommandLine::made_scene_;
+Outcome CommandLine::made_model_;
 
 TEST(Usage, HelpAndVersionSucceed)
 {
   EXPECT_EQ(run("--help").exit_code, 0);
-  const Run version = run("--version");
+  const Outcome version = run("--version");
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_EQ(version.text, std::string("bin_picking ") + BIN_PICKING_VERSION + "\n");
   for (const std::string command : {"train", "detect", "match", "demo-scene", "parameters"})
   {
-    const Run help = run(command + " --help");
+    const Outcome help = run(command + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.text.find("example: bin_picking " + command), std::string::npos) << help.text;
   }
@@ -156,7 +156,7 @@ TEST(Usage, ParametersOfEveryPresetAreListedWithTheirEffect)
 {
   for (const std::string preset : {"paper", "fast", "accurate"})
   {
-    const Run table = run("parameters --markdown --preset " + preset);
+    const Outcome table = run("parameters --markdown --preset " + preset);
     EXPECT_EQ(table.exit_code, 0);
     EXPECT_NE(table.text.find("| `voting/reference_share` |"), std::string::npos) << table.text;
   }
@@ -192,7 +192,7 @@ TEST_F(CommandLine, TrainSummarizesThePart)
 
 TEST_F(CommandLine, DetectFindsThePartsAndWritesTheFixedForm)
 {
-  const Run found = run(detectScene("--json " + file("found.json") + " --image " + file("found.png")));
+  const Outcome found = run(detectScene("--json " + file("found.json") + " --image " + file("found.png")));
   ASSERT_EQ(found.exit_code, 0) << found.text;
   EXPECT_GT(fs::file_size(file("found.png")), 1000u);
   const nlohmann::json json = readJson(file("found.json"));
@@ -232,10 +232,10 @@ TEST_F(CommandLine, ResultDoesNotDependOnTheNumberOfThreads)
 
 TEST_F(CommandLine, PrintedParametersCanBeReadBack)
 {
-  const Run printed = run("parameters --preset fast");
+  const Outcome printed = run("parameters --preset fast");
   std::ofstream(file("fast.yaml")) << printed.text;
   ASSERT_EQ(run(detectScene("--json " + file("preset.json"))).exit_code, 0);
-  const Run configured = run(detectScene("--config " + file("fast.yaml") + " --json " + file("config.json")));
+  const Outcome configured = run(detectScene("--config " + file("fast.yaml") + " --json " + file("config.json")));
   ASSERT_EQ(configured.exit_code, 0) << configured.text;
   EXPECT_EQ(readJson(file("preset.json")).at("detections"), readJson(file("config.json")).at("detections"));
 }
@@ -243,8 +243,8 @@ TEST_F(CommandLine, PrintedParametersCanBeReadBack)
 TEST_F(CommandLine, NothingFoundIsNoFailure)
 {
   ASSERT_EQ(run("demo-scene " + TUBE + " --count 0 --size 400x320 -o " + file("empty")).exit_code, 0);
-  const Run result = run("detect --model " + model() + " --cloud " + file("empty/scene.pcd") + " --bin " +
-                         file("empty/bin.yaml") + " --json " + file("empty.json"));
+  const Outcome result = run("detect --model " + model() + " --cloud " + file("empty/scene.pcd") + " --bin " +
+                             file("empty/bin.yaml") + " --json " + file("empty.json"));
   EXPECT_EQ(result.exit_code, 0) << result.text;
   const nlohmann::json json = readJson(file("empty.json"));
   EXPECT_NE(json.at("code"), 0);
@@ -277,8 +277,8 @@ TEST_F(CommandLine, MatchFindsAMovedPointSet)
   for (std::size_t i = 0; i < scene.size(); ++i)
     ply << 1000 * scene.points[i].transpose() << " " << scene.normals[i].transpose() << "\n";
   ply.close();
-  const Run result = run("match --model " + model() + " --points " + file("scan.ply") +
-                         " --unit mm --scene-is-part --json " + file("match.json"));
+  const Outcome result = run("match --model " + model() + " --points " + file("scan.ply") +
+                             " --unit mm --scene-is-part --json " + file("match.json"));
   ASSERT_EQ(result.exit_code, 0) << result.text;
   const nlohmann::json json = readJson(file("match.json"));
   ASSERT_FALSE(json.at("detections").empty()) << result.text;
