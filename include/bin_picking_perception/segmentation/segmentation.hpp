@@ -29,11 +29,12 @@ struct SegmentationParameters
   int t1 = 40;                   // Algorithm 1, line 6
   double t2 = 0.4;               // Algorithm 1, line 9
   int erosion = 1;               // Algorithm 1, line 10: iterations of a 3 x 3 element
-  double min_pixel_ratio = 0.5;  // candidate: pixels against the one-sided views of the part
+  double min_pixel_ratio = 0.6;  // candidate: pixels against the one-sided views of the part
   double max_pixel_ratio = 1.3;
   double min_contour_ratio = 0.5;
   double max_contour_ratio = 1.6;
   double edge_depth = 0.004;     // DepthEdges: smallest jump, metres
+  double neck = 0.6;             // DepthEdges: narrowest passage within a segment, of the width of its narrower end
   double min_segment_area = 0.02;  // of the largest one-sided view
 
   void visit(ParameterVisitor& v);

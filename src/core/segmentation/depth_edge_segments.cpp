@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "depth_edge_segments.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bin_picking_perception/scene/grid_connectivity.hpp"
+#include "distance_map.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+constexpr double EDGE_SLOPE = 1.5;  // 56 degrees; steeper continuous surfaces are recognised by the slope on both sides
+constexpr int MAX_HOLE = 3;         // pixels
+constexpr int MIN_SEGMENT_PIXELS = 12;  // smaller ones are specks of noise
+constexpr float LEVELS_PER_PIXEL = 16;  // resolution of the distance that orders the growth
+
+/// Bridges runs of at most MAX_HOLE missing pixels between near depths, so that a missing pixel does not act as an
+/// edge.
+void fillHoles(DepthGrid& grid, int begin, int step, int count, float edge_depth)
+{
+  int last = -1;
+  for (int k = 0; k < count; ++k)
+  {
+    const auto i = static_cast<std::size_t>(begin + k * step);
+    if (std::isnan(grid.z[i]))
+      continue;
+    const int hole = k - last - 1;
+    const float previous = last < 0 ? 0 : grid.z[static_cast<std::size_t>(begin + last * step)];
+    if (last >= 0 && hole > 0 && hole <= MAX_HOLE && std::abs(grid.z[i] - previous) <= edge_depth)
+      for (int m = 1; m <= hole; ++m)
+        grid.z[static_cast<std::size_t>(begin + (last + m) * step)] =
+            previous + (grid.z[i] - previous) * static_cast<float>(m) / static_cast<float>(hole + 1);
+    last = k;
+  }
+}
+
+DepthGrid withoutSmallHoles(const DepthGrid& grid, double edge_depth)
+{
+  DepthGrid filled = grid;
+  for (int v = 0; v < grid.height; ++v)
+    fillHoles(filled, v * grid.width, 1, grid.width, static_cast<float>(edge_depth));
+  for (int u = 0; u < grid.width; ++u)
+    fillHoles(filled, u, grid.width, grid.height, static_cast<float>(edge_depth));
+  return filled;
+}
+
+/// White where a pixel is connected to all its neighbours within the picture.
+cv::Mat interior(const DepthGrid& grid, const ConnectedRuns& runs)
+{
+  cv::Mat mask(grid.height, grid.width, CV_8U);
+  for (int v = 0; v < grid.height; ++v)
+  {
+    for (int u = 0; u < grid.width; ++u)
+    {
+      const auto i = static_cast<std::size_t>(grid.index(u, v));
+      const bool inside = !std::isnan(grid.z[i]) && (u == 0 || runs.left[i] > 0) && (v == 0 || runs.up[i] > 0) &&
+                          (u + 1 == grid.width || runs.right[i] > 0) && (v + 1 == grid.height || runs.down[i] > 0);
+      mask.at<std::uint8_t>(v, u) = inside ? 255 : 0;
+    }
+  }
+  return mask;
+}
+
+/// Pixels by falling distance, equal ones in the order of the picture.
+std::vector<int> growthOrder(const std::vector<int>& level)
+{
+  const int top = level.empty() ? 0 : *std::max_element(level.begin(), level.end());
+  std::vector<int> begin(static_cast<std::size_t>(top) + 2, 0);
+  for (const int l : level)
+    ++begin[static_cast<std::size_t>(top - l) + 1];
+  for (std::size_t k = 1; k < begin.size(); ++k)
+    begin[k] += begin[k - 1];
+  std::vector<int> order(level.size());
+  for (std::size_t i = 0; i < level.size(); ++i)
+    order[static_cast<std::size_t>(begin[static_cast<std::size_t>(top - level[i])]++)] = static_cast<int>(i);
+  return order;
+}
+
+/// Basins that grow downwards from the maxima of the distance and may join (union-find).
+class Basins
+{
+public:
+  explicit Basins(double neck) : neck_(neck) {}
+
+  int add(int peak)
+  {
+    parent_.push_back(static_cast<int>(parent_.size()));
+    peak_.push_back(peak);
+    return parent_.back();
+  }
+
+  int root(int basin)
+  {
+    while (parent_[static_cast<std::size_t>(basin)] != basin)
+    {
+      int& parent = parent_[static_cast<std::size_t>(basin)];
+      parent = parent_[static_cast<std::size_t>(parent)];
+      basin = parent;
+    }
+    return basin;
+  }
+
+  /// Two basins meet at a level: they join unless the passage is a neck of the lower one. Returns the higher basin.
+  int meet(int a, int b, int level)
+  {
+    const auto peak = [&](int basin) { return peak_[static_cast<std::size_t>(basin)]; };
+    const bool a_is_higher = peak(a) > peak(b) || (peak(a) == peak(b) && a < b);
+    const int higher = a_is_higher ? a : b;
+    const int lower = a_is_higher ? b : a;
+    if (level >= neck_ * peak(lower))
+      parent_[static_cast<std::size_t>(lower)] = higher;
+    return higher;
+  }
+
+private:
+  double neck_;
+  std::vector<int> parent_;
+  std::vector<int> peak_;
+};
+
+/// Basin of each pixel, -1 where there is no depth.
+std::vector<int> grow(const DepthGrid& grid, const ConnectedRuns& runs, const std::vector<int>& level, Basins& basins)
+{
+  std::vector<int> basin_of(grid.size(), -1);
+  for (const int pixel : growthOrder(level))
+  {
+    const auto i = static_cast<std::size_t>(pixel);
+    if (std::isnan(grid.z[i]))
+      continue;
+    const std::array<int, 4> neighbours = {runs.left[i] > 0 ? pixel - 1 : -1, runs.right[i] > 0 ? pixel + 1 : -1,
+                                           runs.up[i] > 0 ? pixel - grid.width : -1,
+                                           runs.down[i] > 0 ? pixel + grid.width : -1};
+    int best = -1;
+    for (const int n : neighbours)
+    {
+      if (n < 0 || basin_of[static_cast<std::size_t>(n)] < 0)
+        continue;
+      const int other = basins.root(basin_of[static_cast<std::size_t>(n)]);
+      best = best < 0 || best == other ? other : basins.meet(best, other, level[i]);
+    }
+    basin_of[i] = best < 0 ? basins.add(level[i]) : best;
+  }
+  return basin_of;
+}
+
+/// Numbers the basins in the order of the picture; pixels that were only filled in and specks get no number.
+std::vector<std::int32_t> numbered(const DepthGrid& measured, std::vector<int> basin_of, Basins& basins)
+{
+  std::vector<int> pixels;
+  for (std::size_t i = 0; i < basin_of.size(); ++i)
+  {
+    if (basin_of[i] < 0 || std::isnan(measured.z[i]))
+    {
+      basin_of[i] = -1;
+      continue;
+    }
+    basin_of[i] = basins.root(basin_of[i]);
+    pixels.resize(std::max(pixels.size(), static_cast<std::size_t>(basin_of[i]) + 1), 0);
+    ++pixels[static_cast<std::size_t>(basin_of[i])];
+  }
+  std::vector<std::int32_t> number(pixels.size(), 0);
+  std::vector<std::int32_t> labels(basin_of.size(), 0);
+  std::int32_t count = 0;
+  for (std::size_t i = 0; i < basin_of.size(); ++i)
+  {
+    if (basin_of[i] < 0 || pixels[static_cast<std::size_t>(basin_of[i])] < MIN_SEGMENT_PIXELS)
+      continue;
+    std::int32_t& own = number[static_cast<std::size_t>(basin_of[i])];
+    if (own == 0)
+      own = ++count;
+    labels[i] = own;
+  }
+  return labels;
+}
+}  // namespace
+
+std::vector<std::int32_t> depthEdgeSegments(const DepthGrid& grid, double edge_depth, double neck)
+{
+  if (grid.size() == 0)
+    return {};
+  const DepthGrid filled = withoutSmallHoles(grid, edge_depth);
+  const ConnectedRuns runs = connectedRuns(filled, {edge_depth, EDGE_SLOPE});
+  const cv::Mat distance = distanceToBlack(interior(filled, runs));
+  std::vector<int> level(grid.size());
+  std::transform(distance.begin<float>(), distance.end<float>(), level.begin(),
+                 [](float d) { return static_cast<int>(d * LEVELS_PER_PIXEL + 0.5f); });
+  Basins basins(neck);
+  const std::vector<int> basin_of = grow(filled, runs, level, basins);
+  return numbered(grid, basin_of, basins);
+}
+}  // namespace bin_picking

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_picking_perception/segmentation/segmentation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "bin_picking_perception/model/view_templates.hpp"
+#include "depth_edge_segments.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+constexpr int MAX_SPECK_PIXELS = 9;
+
+/// The picture that Algorithm 1 starts from has a white background (its step 2 turns it black). Data is never white
+/// then.
+std::vector<std::uint8_t> onWhite(std::vector<std::uint8_t> gray)
+{
+  for (auto& level : gray)
+    level = level == 0 ? 255 : std::min<std::uint8_t>(level, 254);
+  return gray;
+}
+
+std::vector<std::int32_t> labelScene(const DepthGrid& grid, const std::vector<std::uint8_t>& gray,
+                                     const SegmentationParameters& parameters)
+{
+  switch (parameters.method)
+  {
+    case SegmentationMethod::Watershed:
+      return watershedSegments(onWhite(gray), grid.width, grid.height, parameters);
+    case SegmentationMethod::DepthEdges:
+      return depthEdgeSegments(grid, parameters.edge_depth, parameters.neck);
+    case SegmentationMethod::None:
+      break;
+  }
+  std::vector<std::int32_t> labels(grid.size(), 0);
+  std::transform(grid.z.begin(), grid.z.end(), labels.begin(), [](float z) { return std::isnan(z) ? 0 : 1; });
+  return labels;
+}
+
+struct Box
+{
+  int u_min = std::numeric_limits<int>::max();
+  int u_max = -1;
+  int v_min = std::numeric_limits<int>::max();
+  int v_max = -1;
+};
+
+/// Sets small groups of zeros. Missing pixels are not contours; the views, which are compared with, have none.
+void fillSpecks(cv::Mat mask)
+{
+  cv::Mat groups;
+  cv::Mat stats;
+  cv::Mat centroids;
+  cv::connectedComponentsWithStats(mask == 0, groups, stats, centroids, 4);
+  for (int v = 0; v < mask.rows; ++v)
+    for (int u = 0; u < mask.cols; ++u)
+      if (stats.at<int>(groups.at<int>(v, u), cv::CC_STAT_AREA) <= MAX_SPECK_PIXELS)
+        mask.at<std::uint8_t>(v, u) = 1;
+}
+
+/// Length of the contours of one label, pixels; measured as those of the model's views are.
+double contourPixels(const Segmentation& segmentation, int label, const Box& box)
+{
+  // One pixel of margin closes contours at the frame.
+  const int width = box.u_max - box.u_min + 3;
+  const int height = box.v_max - box.v_min + 3;
+  std::vector<std::uint8_t> mask(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
+  for (int v = box.v_min; v <= box.v_max; ++v)
+    for (int u = box.u_min; u <= box.u_max; ++u)
+      mask[static_cast<std::size_t>((v - box.v_min + 1) * width + u - box.u_min + 1)] =
+          segmentation.labels[static_cast<std::size_t>(v * segmentation.width + u)] == label;
+  fillSpecks(cv::Mat(height, width, CV_8U, mask.data()));
+  return contourLength(mask, width, height);
+}
+
+std::vector<Segment> measureSegments(const Segmentation& segmentation, const DepthGrid& grid)
+{
+  const int num_labels =
+      segmentation.labels.empty() ? 0 : *std::max_element(segmentation.labels.begin(), segmentation.labels.end());
+  std::vector<Segment> segments(static_cast<std::size_t>(num_labels));
+  std::vector<Box> boxes(segments.size());
+  for (int v = 0; v < grid.height; ++v)
+  {
+    for (int u = 0; u < grid.width; ++u)
+    {
+      const auto i = static_cast<std::size_t>(grid.index(u, v));
+      if (segmentation.labels[i] == 0)
+        continue;
+      const auto k = static_cast<std::size_t>(segmentation.labels[i] - 1);
+      const double z = static_cast<double>(grid.z[i]);
+      segments[k].label = segmentation.labels[i];
+      segments[k].pixels += 1;
+      segments[k].area += grid.pitch(z) * grid.pitch(z);
+      segments[k].mean_depth += z;
+      boxes[k] = {std::min(boxes[k].u_min, u), std::max(boxes[k].u_max, u), std::min(boxes[k].v_min, v),
+                  std::max(boxes[k].v_max, v)};
+    }
+  }
+  for (std::size_t k = 0; k < segments.size(); ++k)
+  {
+    if (segments[k].pixels == 0)
+      continue;
+    segments[k].mean_depth /= segments[k].pixels;
+    segments[k].contour = contourPixels(segmentation, segments[k].label, boxes[k]) * grid.pitch(segments[k].mean_depth);
+  }
+  // A marker can lose all its pixels to the borders of its neighbours.
+  segments.erase(
+      std::remove_if(segments.begin(), segments.end(), [](const Segment& segment) { return segment.pixels == 0; }),
+      segments.end());
+  return segments;
+}
+}  // namespace
+
+void SegmentationParameters::visit(ParameterVisitor& v)
+{
+  v.field({"method", "", "how the scene is divided: not at all, by Algorithm 1 on the gray image, or at depth edges"},
+          method,
+          {{"none", SegmentationMethod::None},
+           {"watershed", SegmentationMethod::Watershed},
+           {"depth_edges", SegmentationMethod::DepthEdges}});
+  v.field({"veto", "", "only candidate targets are matched; otherwise they come first and the rest follows"}, veto);
+  v.field({"gray_near", "m", "depth shown as the brightest gray; 0 with gray_far 0: from the bin or the data", 0, 100},
+          gray_near);
+  v.field({"gray_far", "m", "depth shown as the darkest gray; 0 with gray_near 0: from the bin or the data", 0, 100},
+          gray_far);
+  v.field(
+      {"t1", "", "watershed: gray level above which a pixel can belong to a part; larger ignores deeper parts", 0, 254},
+      t1);
+  v.field({"t2", "",
+           "watershed: share of the largest distance above which a marker begins; larger separates touching parts "
+           "and loses small ones",
+           0, 0.99},
+          t2);
+  v.field({"erosion", "px", "watershed: erosion of the markers; larger separates more and loses small parts", 0, 20},
+          erosion);
+  v.field({"min_pixel_ratio", "", "candidates have at least this share of the pixels of a one-sided view", 0, 10},
+          min_pixel_ratio);
+  v.field({"max_pixel_ratio", "", "candidates have at most this multiple of the pixels of a one-sided view", 0, 10},
+          max_pixel_ratio);
+  v.field({"min_contour_ratio", "", "candidates have at least this share of the contour of a one-sided view", 0, 10},
+          min_contour_ratio);
+  v.field({"max_contour_ratio", "", "candidates have at most this multiple of the contour of a one-sided view", 0, 10},
+          max_contour_ratio);
+  v.field({"edge_depth", "m",
+           "depth edges: smallest depth jump that separates two segments; larger merges touching parts", 0.0005, 0.1},
+          edge_depth);
+  v.field({"neck", "",
+           "depth edges: a segment is cut where it is narrower than this share of its narrower end; larger cuts "
+           "more",
+           0, 1},
+          neck);
+  v.field({"min_segment_area", "", "segments below this share of the largest one-sided view are ignored", 0, 1},
+          min_segment_area);
+}
+
+Segmentation segmentScene(const DepthGrid& grid, const SegmentationParameters& parameters, const Bin* bin)
+{
+  Segmentation segmentation;
+  segmentation.width = grid.width;
+  segmentation.height = grid.height;
+  segmentation.gray = depthToGray(grid, parameters, bin);
+  if (grid.size() == 0)
+    return segmentation;
+  segmentation.labels = labelScene(grid, segmentation.gray, parameters);
+  segmentation.segments = measureSegments(segmentation, grid);
+  return segmentation;
+}
+}  // namespace bin_picking
