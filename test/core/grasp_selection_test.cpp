@@ -225,6 +225,29 @@ TEST(GraspSelection, FingersMustNotTouchAWall)
   EXPECT_LT(in_wall.rejected[0].bin_clearance, 0);
 }
 
+TEST(GraspSelection, EveryWallAndItsCornersAreThere)
+{
+  PartDefinition across = partWith({graspFromAbove("along_x"), graspFromAbove("along_y")});
+  across.grasps[0].T_object_tip = across.grasps[0].T_object_tip * AngleAxisd(M_PI / 2, Vector3d::UnitZ());
+  const struct
+  {
+    Vector3d position;
+    std::string wall;
+  } cases[] = {{{0.19, 0, 0.07}, "wall at +x"},
+               {{-0.19, 0, 0.07}, "wall at -x"},
+               {{0, 0.14, 0.07}, "wall at +y"},
+               {{0, -0.14, 0.07}, "wall at -y"}};
+  for (const auto& c : cases)
+  {
+    const GraspSelection selection = selectInBin({detectionAt(c.position)}, across);
+    ASSERT_EQ(selection.rejected.size(), 1u) << c.wall;  // the fingers that close along the wall pass
+    EXPECT_NE(selection.rejected[0].reason.find(c.wall), std::string::npos) << selection.rejected[0].reason;
+  }
+  for (const double x : {-0.19, 0.19})
+    for (const double y : {-0.14, 0.14})
+      EXPECT_EQ(selectInBin({detectionAt({x, y, 0.07})}, across).rejected.size(), 2u);
+}
+
 TEST(GraspSelection, TurningTheFingersAlongTheWallFreesAGrasp)
 {
   // The same part at the same place: across the wall it is blocked, along the wall the fingers reach 5 mm aside.
@@ -354,14 +377,20 @@ TEST(GraspSelection, EqualGraspsKeepTheStatedOrder)
 {
   PartDefinition part = partWith({graspFromAbove("a"), graspFromAbove("b")});
   part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, Vector3d::UnitZ()));
-  const std::vector<Detection> detections(2, detectionAt({0.01, 0.02, 0.06}));
-  const GraspSelection selection = selectInBin(detections, part);
-  ASSERT_EQ(selection.grasps.size(), 8u);
-  for (std::size_t i = 0; i < 8; ++i)
+  // Many odd attitudes: the copies' tilts and heights differ by rounding, which must not decide.
+  for (int attitude = 0; attitude < 50; ++attitude)
   {
-    EXPECT_EQ(selection.grasps[i].detection_index, i / 4);
-    EXPECT_EQ(selection.grasps[i].grasp_id, i / 2 % 2 ? "b" : "a");
-    EXPECT_EQ(selection.grasps[i].symmetry_variant, static_cast<int>(i % 2));
+    const Vector3d axis = Vector3d(0.3, -0.7, 0.011 * attitude).normalized();
+    const Detection detection =
+        detectionAt({0.013, 0.027, 0.08}, Eigen::Quaterniond(AngleAxisd(0.3 + 0.003 * attitude, axis)));
+    const GraspSelection selection = selectInBin({detection, detection}, part);
+    ASSERT_EQ(selection.grasps.size(), 8u);
+    for (std::size_t i = 0; i < 8; ++i)
+    {
+      EXPECT_EQ(selection.grasps[i].detection_index, i / 4);
+      EXPECT_EQ(selection.grasps[i].grasp_id, i / 2 % 2 ? "b" : "a");
+      EXPECT_EQ(selection.grasps[i].symmetry_variant, static_cast<int>(i % 2));
+    }
   }
 }
 
