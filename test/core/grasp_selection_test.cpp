@@ -375,14 +375,18 @@ TEST(GraspSelection, BetterGraspsComeFirst)
 
 TEST(GraspSelection, EqualGraspsKeepTheStatedOrder)
 {
+  // Turns about the approach leave everything that counts as it is. The axis lies askew in the part frame.
+  const Eigen::Quaterniond askew(AngleAxisd(0.6, Vector3d(1, 2, 3).normalized()));
   PartDefinition part = partWith({graspFromAbove("a"), graspFromAbove("b")});
-  part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, Vector3d::UnitZ()));
+  for (GraspDefinition& grasp : part.grasps)
+    grasp.T_object_tip = Pose(askew) * grasp.T_object_tip;
+  part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, askew * Vector3d::UnitZ()));
   // Many odd attitudes: the copies' tilts and heights differ by rounding, which must not decide.
   for (int attitude = 0; attitude < 50; ++attitude)
   {
     const Vector3d axis = Vector3d(0.3, -0.7, 0.011 * attitude).normalized();
     const Detection detection =
-        detectionAt({0.013, 0.027, 0.08}, Eigen::Quaterniond(AngleAxisd(0.3 + 0.003 * attitude, axis)));
+        detectionAt({0.013, 0.027, 0.08}, AngleAxisd(0.3 + 0.003 * attitude, axis) * askew.conjugate());
     const GraspSelection selection = selectInBin({detection, detection}, part);
     ASSERT_EQ(selection.grasps.size(), 8u);
     for (std::size_t i = 0; i < 8; ++i)
