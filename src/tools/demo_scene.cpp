@@ -63,9 +63,9 @@ std::string binYaml(const Bin& bin)
 
 std::string truthJson(const DemoScene& scene, const std::string& part)
 {
-  nlohmann::ordered_json json;
+  nlohmann::json json;
   json["part"] = part;
-  json["instances"] = nlohmann::ordered_json::array();
+  json["instances"] = nlohmann::json::array();
   for (const auto& instance : scene.instances)
     json["instances"].push_back({{"T_camera_object", toJson(instance.T_camera_object)},
                                  {"visible_fraction", instance.visible_fraction},

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
 #include <iostream>
 
 #include "bin_picking_perception/detector.hpp"
@@ -16,7 +19,7 @@ namespace
 {
 void writeJson(const Arguments& arguments, const DetectionResult& result, double models_seconds, double cloud_seconds)
 {
-  nlohmann::ordered_json json = toJson(result);
+  nlohmann::json json = toJson(result);
   json["cloud"] = arguments.value("--cloud");
   json["models"] = arguments.values("--model");
   json["loading_ms"] = {{"models", models_seconds * 1000}, {"cloud", cloud_seconds * 1000}};
@@ -35,16 +38,16 @@ void detect(const Arguments& arguments)
   if (arguments.has("--bin"))
     request.bin = loadBin(arguments.value("--bin"));
   const Stopwatch cloud_watch;
-  const DepthGrid grid = loadGrid(arguments.value("--cloud"), parameters.input);
+  const pcl::PointCloud<pcl::PointXYZ> cloud = loadCloud(arguments.value("--cloud"));
   const double cloud_seconds = cloud_watch.seconds();
   progress.show("detecting");
-  const DetectionResult result = Detector(models, parameters).detect(grid, request);
+  const DetectionResult result = Detector(models, parameters).detect(cloud, request);
   progress.finish();
   print(std::cout, result);
   if (arguments.has("--json"))
     writeJson(arguments, result, models_seconds, cloud_seconds);
   if (arguments.has("--image"))
-    saveDetectionPicture(grid, result, models, arguments.value("--image"));
+    saveDetectionPicture(makeGrid(cloud, parameters.input), result, models, arguments.value("--image"));
 }
 }  // namespace
 

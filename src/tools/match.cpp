@@ -30,7 +30,7 @@ void match(const Arguments& arguments)
   print(std::cout, result);
   if (!arguments.has("--json"))
     return;
-  nlohmann::ordered_json json = toJson(result);
+  nlohmann::json json = toJson(result);
   json["points"] = arguments.value("--points");
   json["models"] = arguments.values("--model");
   json["loading_ms"] = {{"models", model_seconds * 1000}, {"points", points_seconds * 1000}};

@@ -11,7 +11,7 @@ namespace bin_picking::tools
 {
 namespace
 {
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 constexpr std::size_t PRINTED_REJECTIONS = 5;
 
@@ -57,7 +57,7 @@ void printDetections(std::ostream& out, const std::vector<Detection>& detections
 }
 }  // namespace
 
-nlohmann::ordered_json toJson(const Pose& T)
+nlohmann::json toJson(const Pose& T)
 {
   Json rows = Json::array();
   for (int row = 0; row < 4; ++row)
@@ -65,7 +65,7 @@ nlohmann::ordered_json toJson(const Pose& T)
   return rows;
 }
 
-nlohmann::ordered_json toJson(const DetectionResult& result)
+nlohmann::json toJson(const DetectionResult& result)
 {
   Json json;
   json["code"] = static_cast<int>(result.code);

@@ -11,10 +11,10 @@
 namespace bin_picking::tools
 {
 /// T as four rows of four numbers, metres.
-nlohmann::ordered_json toJson(const Pose& T);
+nlohmann::json toJson(const Pose& T);
 
 /// The form that other programs read. Files and their loading times are for the caller to add.
-nlohmann::ordered_json toJson(const DetectionResult& result);
+nlohmann::json toJson(const DetectionResult& result);
 
 /// For people: the message, a table of the detections, why others were rejected, the stages.
 void print(std::ostream& out, const DetectionResult& result);

@@ -57,7 +57,7 @@ TrainingParameters trainingParameters(const Arguments& arguments, const PartDefi
 
 void printLine(const std::string& title, const std::string& text)
 {
-  std::cout << "  " << std::left << std::setw(14) << title << text << "\n";
+  std::cout << "  " << std::left << std::setw(21) << title << text << "\n";
 }
 
 std::string millimetres(const Eigen::Vector3d& size)
@@ -87,6 +87,13 @@ void printMesh(const TrainedModel& model)
     std::cerr << "warning: " << warning << "\n";
 }
 
+std::string parameterText(const ParameterEntry& entry)
+{
+  if (entry.unit == "m")
+    return fixed(1000 * parseQuantity(entry.value, "m"), 3) + " mm";
+  return entry.value + (entry.unit.empty() ? "" : " " + entry.unit);
+}
+
 void printSummary(TrainedModel model, double seconds, const std::string& path)
 {
   std::cout << model.name << "\n";
@@ -96,8 +103,10 @@ void printSummary(TrainedModel model, double seconds, const std::string& path)
                           " on the surface, " + std::to_string(model.views.size()) + " views");
   printLine("pairs", std::to_string(model.table.numEntries()) + " under " + std::to_string(model.table.numKeys()) +
                          " features, " + fixed(static_cast<double>(model.table.bytes()) / 1048576, 1) + " MiB");
+  printLine("low curvature", "up to " + fixed(model.classes.low_max, 1));
+  printLine("high curvature", "above " + fixed(model.classes.high_min, 1));
   for (const ParameterEntry& entry : listParameters(visitor(model.parameters)))
-    printLine(entry.path, entry.value + (entry.unit.empty() ? "" : " " + entry.unit));
+    printLine(entry.path, parameterText(entry));
   printLine("time", fixed(seconds, 1) + " s");
   printLine("written to", path);
 }

@@ -49,7 +49,10 @@ void cropToRegion(DepthGrid& grid, const InputParameters& parameters, const Bin*
 /// Least squares fit of a pinhole camera to the grid's points. \param error median pixel residual
 PinholeCamera fitPinholeCamera(const DepthGrid& grid, double& error);
 
-/// Reads an organized PCD file. \throws FileError missing, not PCD, no x/y/z
+/// Reads a PCD file as it is. \throws FileError missing, not PCD, no x/y/z
+pcl::PointCloud<pcl::PointXYZ> loadCloud(const std::string& path);
+
+/// loadCloud() and makeGrid().
 DepthGrid loadGrid(const std::string& path, const InputParameters& parameters);
 
 /// Writes an organized binary PCD file (x y z float32, metres, NaN). \throws FileError

@@ -57,7 +57,7 @@ void requireFields(const pcl::PCLPointCloud2& blob, const std::string& path)
 }
 }  // namespace
 
-DepthGrid loadGrid(const std::string& path, const InputParameters& parameters)
+pcl::PointCloud<pcl::PointXYZ> loadCloud(const std::string& path)
 {
   requireHeader(path);
   pcl::PCLPointCloud2 blob;
@@ -75,7 +75,12 @@ DepthGrid loadGrid(const std::string& path, const InputParameters& parameters)
   requireFields(blob, path);
   pcl::PointCloud<pcl::PointXYZ> cloud;
   pcl::fromPCLPointCloud2(blob, cloud);
-  return makeGrid(cloud, parameters);
+  return cloud;
+}
+
+DepthGrid loadGrid(const std::string& path, const InputParameters& parameters)
+{
+  return makeGrid(loadCloud(path), parameters);
 }
 
 void saveGrid(const DepthGrid& grid, const std::string& path)
