@@ -19,6 +19,8 @@ struct VerificationParameters
   double depth_tolerance = 0.35;
   double noise_tolerance = 2.5;
   double max_normal_angle = 0.7;
+  double min_outline_share = 0.35;
+  double min_score = 0.52;
   double min_visible_fraction = 0.35;
   double min_inlier_share = 0.6;
   double max_violation_share = 0.2;
@@ -61,6 +63,28 @@ OrientedPoints facingPoints(const TrainedModel& model, const Pose& T_camera_obje
 PoseEvidence gatherEvidence(const OrientedPoints& facing, const Pose& T_camera_object, const DepthGrid& grid,
                             const std::vector<Eigen::Vector3f>& normals, double tolerance,
                             const VerificationParameters& parameters);
+
+/// What the scene does just outside of the part's outline, point by point along it.
+struct OutlineEvidence
+{
+  int ends = 0;       ///< the scene drops behind the part: an edge, as there should be
+  int continues = 0;  ///< the surface goes on: the part is not there, or it touches a neighbour of equal height
+  int hidden = 0;     ///< something nearer, or no data: says nothing
+
+  double share() const { return ends + continues > 0 ? static_cast<double>(ends) / (ends + continues) : 0; }
+};
+
+/// A pose on the middle of a larger surface explains all its points; only the outline tells that it is wrong.
+/// \param visible all points of the nearest view; their spacing must be well below `step`
+/// \param step how far outside of the outline the scene is looked at, metres
+/// \param tolerance depth difference that is still "going on", metres
+OutlineEvidence gatherOutlineEvidence(const OrientedPoints& visible, const Pose& T_camera_object, const DepthGrid& grid,
+                                      double step, double tolerance);
+
+/// Image cells that a pose covers with explained pixels, ascending; two poses on one part share most of them.
+/// \param scale raw pixels per pixel of this grid, so that poses found on different reductions can be compared
+/// \param cell edge of a cell in raw pixels; wider than the spacing of the points that were tested
+std::vector<int> coveredCells(const std::vector<int>& pixels, int grid_width, int scale, int cell);
 
 /// Equation 9: the share of `object_points` that have a model point within `distance`. 0 for no points.
 double matchingRate(const OrientedPoints& model_surface, const Pose& T_camera_object,

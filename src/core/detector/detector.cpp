@@ -101,6 +101,7 @@ DetectionResult Detector::detect(const DepthGrid& grid, const Request& request) 
     return result;
   }
 
+  const int comparison_cell = comparisonCell(region, models_);
   std::vector<Assessed> assessed;
   for (const std::size_t index : indices)
   {
@@ -113,7 +114,7 @@ DetectionResult Detector::detect(const DepthGrid& grid, const Request& request) 
     const auto search = planSearch(scene, segmentation, candidates, parameters_);
     clock.lap("segmentation");
     const auto poses = searchPoses(search, model, parameters_, deadline, executor_, clock, result.partial);
-    auto found = refineAndVerify(poses, scene, model, parameters_, deadline, executor_, clock, result.partial);
+    auto found = refineAndVerify(poses, scene, model, parameters_, comparison_cell, deadline, executor_, clock, result.partial);
     for (auto& pose : found)
       pose.detection.model_index = index;
     std::move(found.begin(), found.end(), std::back_inserter(assessed));

@@ -14,10 +14,13 @@ namespace
 constexpr std::size_t COARSE_POINTS = 250;
 constexpr std::size_t FINE_POINTS = 1500;
 
-double score(const PoseEvidence& evidence, const VerificationParameters& parameters)
+double score(const PoseEvidence& evidence, double outline_share, const VerificationParameters& parameters)
 {
-  // The share says how right the pose is, the visible fraction how sure that is; neither alone ranks well.
-  return evidence.inlierShare(parameters.unmeasured_weight) * std::sqrt(evidence.visibleFraction());
+  // The inlier share says how right the pose is, the visible fraction how sure that is, and the outline whether it is the
+  // whole of the thing that was seen; no one of them ranks well alone.
+  constexpr double OUTLINE_WEIGHT = 0.3;
+  return evidence.inlierShare(parameters.unmeasured_weight) * std::sqrt(evidence.visibleFraction()) *
+         (1 - OUTLINE_WEIGHT * (1 - outline_share));
 }
 
 double tolerance(const PreparedScene& scene, const TrainedModel& model, const VerificationParameters& parameters)
@@ -39,7 +42,7 @@ std::vector<Hypothetical> mostPromising(const std::vector<Hypothetical>& poses, 
     const OrientedPoints facing = facingPoints(model, poses[i].T_camera_object, COARSE_POINTS);
     scores[i] = score(gatherEvidence(facing, poses[i].T_camera_object, scene.grid, scene.normals,
                                      UNREFINED * tolerance(scene, model, parameters), parameters),
-                      parameters);
+                      1, parameters);
   });
   std::vector<std::size_t> order(poses.size());
   for (std::size_t i = 0; i < order.size(); ++i)
@@ -69,7 +72,16 @@ IcpResult refine(const Hypothetical& pose, const PreparedScene& scene, const Tra
   return unchanged;
 }
 
-void judge(Detection& detection, const PoseEvidence& evidence, const VerificationParameters& parameters)
+OutlineEvidence outline(const Pose& T_camera_object, const PreparedScene& scene, const TrainedModel& model)
+{
+  constexpr double NOISE_TOLERANCE = 3;  // standard deviations
+  const double leaf = model.parameters.leaf;
+  return gatherOutlineEvidence(facingPoints(model, T_camera_object, model.surface.size()), T_camera_object, scene.grid, leaf,
+                               leaf + NOISE_TOLERANCE * scene.noise);
+}
+
+void judge(Detection& detection, const PoseEvidence& evidence, const OutlineEvidence& outline,
+           const VerificationParameters& parameters)
 {
   detection.criteria.push_back({"matching_rate", detection.matching_rate, parameters.min_matching_rate, false});
   if (parameters.enabled)
@@ -78,6 +90,8 @@ void judge(Detection& detection, const PoseEvidence& evidence, const Verificatio
         {"inlier_share", evidence.inlierShare(parameters.unmeasured_weight), parameters.min_inlier_share, false});
     detection.criteria.push_back({"visible_fraction", detection.visible_fraction, parameters.min_visible_fraction, false});
     detection.criteria.push_back({"violation_share", evidence.violationShare(), parameters.max_violation_share, true});
+    detection.criteria.push_back({"score", detection.score, parameters.min_score, false});
+    detection.criteria.push_back({"outline_share", outline.share(), parameters.min_outline_share, false});
   }
   for (const auto& criterion : detection.criteria)
     if (!criterion.passed() && detection.rejection.empty())
@@ -86,7 +100,7 @@ void judge(Detection& detection, const PoseEvidence& evidence, const Verificatio
 }
 
 Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
-                const DetectorParameters& parameters)
+                const DetectorParameters& parameters, int comparison_cell)
 {
   const VerificationParameters& verification = parameters.verification;
   const IcpResult refined = refine(pose, scene, model, parameters.icp);
@@ -95,7 +109,7 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
   detection.part = model.name;
   detection.T_camera_object = refined.T_camera_object;
   detection.votes = pose.votes;
-  PoseEvidence evidence = gatherEvidence(facingPoints(model, refined.T_camera_object, FINE_POINTS), refined.T_camera_object,
+  const PoseEvidence evidence = gatherEvidence(facingPoints(model, refined.T_camera_object, FINE_POINTS), refined.T_camera_object,
                                          scene.grid, scene.normals, tolerance(scene, model, verification), verification);
   detection.visible_fraction = evidence.visibleFraction();
   detection.rms = evidence.rms;
@@ -103,15 +117,32 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
                                 matchingRate(model.surface, refined.T_camera_object, pose.region->samples.points,
                                              verification.match_distance) :
                                 evidence.matchingRate();
-  detection.score = verification.enabled ? score(evidence, verification) : detection.matching_rate;
-  judge(detection, evidence, verification);
-  assessed.pixels = std::move(evidence.pixels);
+  const OutlineEvidence ends = outline(refined.T_camera_object, scene, model);
+  detection.score = verification.enabled ? score(evidence, ends.share(), verification) : detection.matching_rate;
+  judge(detection, evidence, ends, verification);
+  assessed.cells = coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell);
   return assessed;
 }
 }  // namespace
 
+int comparisonCell(const DepthGrid& cropped, const std::vector<std::shared_ptr<const TrainedModel>>& models)
+{
+  std::vector<float> depths;
+  for (const float z : cropped.z)
+    if (!std::isnan(z))
+      depths.push_back(z);
+  double leaf = 0;
+  for (const auto& model : models)
+    leaf = std::max(leaf, model->parameters.leaf);
+  if (depths.empty())
+    return 1;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return std::max(1, static_cast<int>(std::lround(leaf / cropped.pitch(static_cast<double>(*middle)))));
+}
+
 std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, const PreparedScene& scene,
-                                      const TrainedModel& model, const DetectorParameters& parameters,
+                                      const TrainedModel& model, const DetectorParameters& parameters, int comparison_cell,
                                       const Deadline& deadline, const Executor& executor, StageClock& clock, bool& partial)
 {
   const auto best = mostPromising(poses, scene, model, parameters.verification, executor);
@@ -121,7 +152,7 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
   executor.forEach(best.size(), [&](std::size_t i) {
     skipped[i] = deadline.passed();
     if (!skipped[i])
-      assessed[i] = assess(best[i], scene, model, parameters);
+      assessed[i] = assess(best[i], scene, model, parameters, comparison_cell);
   });
   std::vector<Assessed> ready;
   for (std::size_t i = 0; i < best.size(); ++i)
@@ -143,11 +174,11 @@ void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& 
   {
     Detection& detection = candidate.detection;
     std::vector<int> shared;
-    std::set_intersection(candidate.pixels.begin(), candidate.pixels.end(), explained.begin(), explained.end(),
+    std::set_intersection(candidate.cells.begin(), candidate.cells.end(), explained.begin(), explained.end(),
                           std::back_inserter(shared));
-    const double overlap = static_cast<double>(shared.size()) / std::max<double>(1, static_cast<double>(candidate.pixels.size()));
+    const double overlap = static_cast<double>(shared.size()) / std::max<double>(1, static_cast<double>(candidate.cells.size()));
     if (detection.rejection.empty() && overlap > parameters.verification.overlap)
-      detection.rejection = "a better detection explains " + std::to_string(100 * overlap).substr(0, 4) + " % of its pixels";
+      detection.rejection = "a better detection explains " + std::to_string(100 * overlap).substr(0, 4) + " % of what it explains";
     if (detection.rejection.empty() && static_cast<int>(result.detections.size()) >= parameters.max_detections)
       detection.rejection = "max_detections better ones were found";
     if (!detection.rejection.empty())
@@ -157,7 +188,7 @@ void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& 
       continue;
     }
     std::vector<int> merged;
-    std::set_union(explained.begin(), explained.end(), candidate.pixels.begin(), candidate.pixels.end(), std::back_inserter(merged));
+    std::set_union(explained.begin(), explained.end(), candidate.cells.begin(), candidate.cells.end(), std::back_inserter(merged));
     explained = std::move(merged);
     result.detections.push_back(std::move(detection));
   }

@@ -14,7 +14,8 @@ PreparedScene prepareScene(const DepthGrid& cropped, const TrainedModel& model, 
 {
   const TrainingParameters& trained = model.parameters;
   PreparedScene scene;
-  scene.grid = reduceGrid(cropped, reductionFactor(cropped, trained.leaf, parameters.preprocessing));
+  scene.reduction = reductionFactor(cropped, trained.leaf, parameters.preprocessing);
+  scene.grid = reduceGrid(cropped, scene.reduction);
   removeOutliers(scene.grid, parameters.preprocessing);
   scene.noise = estimateDepthNoise(scene.grid);
   clock.lap("outliers");

@@ -16,6 +16,7 @@ namespace bin_picking
 struct PreparedScene
 {
   DepthGrid grid;                        ///< working grid
+  int reduction = 1;                     ///< raw pixels per pixel of the working grid
   std::vector<Eigen::Vector3f> normals;  ///< per pixel of the working grid
   double noise = 0;                      ///< of the depth, metres
   SceneSamples samples;
@@ -50,18 +51,22 @@ std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, 
                                       const DetectorParameters& parameters, const Deadline& deadline, const Executor& executor,
                                       StageClock& clock, bool& partial);
 
-/// A refined pose with the pixels that it explains.
+/// A refined pose with the image cells that it explains.
 struct Assessed
 {
   Detection detection;
-  std::vector<int> pixels;
+  std::vector<int> cells;
 };
+
+/// Edge of the image cells by which poses are compared: about a leaf of the coarsest model, in raw pixels.
+int comparisonCell(const DepthGrid& cropped, const std::vector<std::shared_ptr<const TrainedModel>>& models);
 
 /// The most promising poses, refined by ICP and tested. Order: as given.
 std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, const PreparedScene& scene,
                                       const TrainedModel& model, const DetectorParameters& parameters,
-                                      const Deadline& deadline, const Executor& executor, StageClock& clock, bool& partial);
+                                      int comparison_cell, const Deadline& deadline, const Executor& executor,
+                                      StageClock& clock, bool& partial);
 
-/// Sorts by score; rejects what failed a criterion and what explains the same pixels as better ones.
+/// Sorts by score; rejects what failed a criterion and what explains the same cells as better ones.
 void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& parameters, DetectionResult& result);
 }  // namespace bin_picking

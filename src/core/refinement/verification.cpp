@@ -24,6 +24,9 @@ void VerificationParameters::visit(ParameterVisitor& v)
   v.field({"min_inlier_share", "", "smallest share of explained points among those that speak for or against a pose", 0, 1},
           min_inlier_share);
   v.field({"max_violation_share", "", "largest share of points behind which the sensor saw something", 0, 1}, max_violation_share);
+  v.field({"min_outline_share", "", "smallest share of the outline at which the scene ends, as it must around a part that lies "
+                                    "free; parts packed side by side at one height need less", 0, 1}, min_outline_share);
+  v.field({"min_score", "", "smallest accepted score: inlier share, visible fraction and outline share together", 0, 1}, min_score);
   v.field({"unmeasured_weight", "", "how much a point without data speaks against a pose, compared to a contradicted one", 0, 1},
           unmeasured_weight);
   v.field({"overlap", "", "a detection that shares more than this part of its pixels with better ones is dropped", 0.01, 1}, overlap);
