@@ -14,7 +14,7 @@ namespace bin_picking
 class Executor;
 
 /// What cameras all around the part see of it, in directions spread evenly over the sphere. The cameras are so far away
-/// (20 diameters) that the projection is nearly parallel: sizes in metres then hold for any distance.
+/// (200 diameters) that the projection is nearly parallel: sizes in metres then hold for any distance.
 /// A surface point is visible if its normal faces the camera (cosine above 0.1) and nothing hides it by more than 1.5
 /// pixels, plus what its slant makes within a pixel.
 /// The result does not depend on the executor.

@@ -14,7 +14,8 @@ namespace bin_picking
 {
 namespace
 {
-constexpr double DISTANCE_IN_DIAMETERS = 20;
+/// Parallel to 0.3 % of sizes, and near enough that single precision tells depths of a millionth of the part.
+constexpr double DISTANCE_IN_DIAMETERS = 200;
 constexpr double MIN_FACING_COSINE = 0.1;
 constexpr double DEPTH_TOLERANCE_PIXELS = 1.5;
 constexpr double DISC_RADIUS_PIXELS = 2;
@@ -66,7 +67,7 @@ ViewCamera makeCamera(const std::vector<Eigen::Vector3f>& points, double pixel)
                          std::to_string(MIN_SIDE) + " and " + std::to_string(MAX_SIDE) +
                          "; change the spacing of the surface points");
   camera.distance = DISTANCE_IN_DIAMETERS * 2 * radius;
-  // The near side of the part appears up to 1 / 40 larger.
+  // The near side of the part appears a little larger.
   camera.side = static_cast<int>(std::ceil(pixels_across * (1 + 1 / DISTANCE_IN_DIAMETERS))) + 2 * MARGIN;
   const double focal_length = camera.distance / pixel;
   camera.intrinsics = {focal_length, focal_length, (camera.side - 1) / 2.0, (camera.side - 1) / 2.0};
