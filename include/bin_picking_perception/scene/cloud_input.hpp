@@ -36,17 +36,18 @@ struct InputParameters
   void visit(ParameterVisitor& v);
 };
 
-/// The organized cloud as a grid: NaN, infinity, (0, 0, 0) and absurdly large values become invalid; the pinhole camera is
-/// fitted to the points.
-/// \throws CloudError Empty, Unorganized, AllInvalid, UnitSuspect (median depth above max_plausible_depth: the message
-///   says that it looks like millimetres), NoProjection (pixel residual above max_projection_error)
+/// The organized cloud as a grid: NaN, infinity, (0, 0, 0) and absurdly large values become invalid; the pinhole camera
+/// is fitted to the points.
+/// \throws CloudError Empty, BadLayout, Unorganized, AllInvalid, UnitSuspect (median depth above max_plausible_depth: it
+///   looks like millimetres), NoProjection (pixel residual above max_projection_error)
 DepthGrid makeGrid(const pcl::PointCloud<pcl::PointXYZ>& cloud, const InputParameters& parameters);
 
-/// Invalidates what lies outside the limits and, if a bin is given, outside of its inner box (above floor + margin, also
-/// above the rim).
+/// Invalidates what lies outside the limits and, if a bin is given, outside of its inner box (above floor + margin,
+/// also above the rim).
 void cropToRegion(DepthGrid& grid, const InputParameters& parameters, const Bin* bin);
 
-/// Least squares fit of a pinhole camera to the grid's points. \param error median pixel residual
+/// Least squares fit of a pinhole camera to the grid's points, without those that miss it. \param error median pixel
+/// residual; infinity if the points fix no camera (fewer than three, or in one row, column or ray)
 PinholeCamera fitPinholeCamera(const DepthGrid& grid, double& error);
 
 /// Reads a PCD file as it is. \throws FileError missing, not PCD, no x/y/z

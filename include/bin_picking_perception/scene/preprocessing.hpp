@@ -17,25 +17,25 @@ class Executor;
 /// From the raw grid to the surface samples that are matched.
 struct PreprocessingParameters
 {
-  double pixels_per_leaf = 3;          // working grid: pixels are merged in blocks until about this many fit in a leaf
+  double pixels_per_leaf = 3;  // working grid: pixels are merged in blocks until about this many fit in a leaf
   int outlier_window = 2;
   double outlier_min_share = 0.3;
   double outlier_distance = 0.004;
-  double max_normal_tilt = 1.4;        // surfaces seen at a flatter angle are not sampled
+  double max_normal_tilt = 1.4;  // surfaces seen at a flatter angle are not sampled
   bool split_by_normal = true;
 
   void visit(ParameterVisitor& v);
 };
 
-/// Merges blocks of factor x factor pixels into one: the mean of the block's points that lie near the block's median depth
-/// (a mixed block keeps its larger surface; points are never averaged across a depth edge). factor 1 copies.
+/// Merges blocks of factor x factor pixels into one: the mean of the block's points that lie near the block's median
+/// depth (a mixed block keeps its larger surface; points are never averaged across a depth edge). factor 1 copies.
 DepthGrid reduceGrid(const DepthGrid& grid, int factor);
 
 /// Block size that brings the grid's pitch at its median depth to about leaf / pixels_per_leaf; at least 1.
 int reductionFactor(const DepthGrid& grid, double leaf, const PreprocessingParameters& parameters);
 
-/// Invalidates points with fewer than outlier_min_share of their (2 window + 1)^2 - 1 neighbours within outlier_distance
-/// along the ray direction (slope-aware: the limit grows with the local pitch).
+/// Invalidates points with fewer than outlier_min_share of their (2 window + 1)^2 - 1 neighbours within
+/// outlier_distance along the ray direction (slope-aware: the limit grows with the local pitch).
 void removeOutliers(DepthGrid& grid, const PreprocessingParameters& parameters);
 
 /// Unit normals towards the camera, one per pixel, by a plane fit over the neighbours within `radius` (metres) that are
@@ -48,17 +48,19 @@ double estimateDepthNoise(const DepthGrid& grid);
 /// Samples of the scene's surface on the leaf grid.
 struct SceneSamples : OrientedPoints
 {
-  std::vector<int> pixel;                   ///< index into the working grid of the nearest measured pixel
-  std::vector<std::uint8_t> curvature_complete;  ///< 1: the neighbourhood is not cut off by a depth edge or missing data
+  /// Index into the working grid of the nearest measured pixel.
+  std::vector<int> pixel;
+  /// 1: at least 80 % of the neighbourhood was measured; not cut off by a depth edge or missing data.
+  std::vector<std::uint8_t> curvature_complete;
 };
 
-/// One point per leaf-sized voxel (its centroid, put onto the local plane); with split_by_normal up to three where
-/// normals within a voxel differ by more than 30 degrees. Order: by pixel.
+/// One point per leaf-sized voxel: the mean of its points, which averages their noise; with split_by_normal up to three
+/// where normals within a voxel differ by more than 30 degrees. Order: by pixel.
 SceneSamples sampleScene(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& normals, double leaf,
                          const PreprocessingParameters& parameters);
 
-/// Fills samples.curvature (and curvature_complete) from the grid points within `radius` that are connected to the sample
-/// without crossing a depth edge and whose normal is within max_normal_angle of the sample's.
+/// Fills samples.curvature (and curvature_complete) from the grid points within `radius` that are connected to the
+/// sample without crossing a depth edge and whose normal is within max_normal_angle of the sample's.
 void estimateGridCurvature(SceneSamples& samples, const DepthGrid& grid, const std::vector<Eigen::Vector3f>& normals,
                            CurvatureMeasure measure, double radius, double max_normal_angle, const Executor& executor);
 }  // namespace bin_picking

@@ -15,16 +15,16 @@ namespace bin_picking
 {
 enum class SegmentationMethod
 {
-  None,        ///< the whole region is one segment
-  Watershed,   ///< Algorithm 1 of the paper, on the gray image
-  DepthEdges   ///< regions between depth discontinuities, in metres
+  None,       ///< the whole region is one segment
+  Watershed,  ///< Algorithm 1 of the paper, on the gray image
+  DepthEdges  ///< regions between depth discontinuities, in metres
 };
 
 struct SegmentationParameters
 {
   SegmentationMethod method = SegmentationMethod::DepthEdges;
-  bool veto = false;             // true: only candidate targets are matched (paper); false: they only come first
-  double gray_near = 0;          // depth that maps to the brightest gray; both 0: from the bin or the data
+  bool veto = false;     // true: only candidate targets are matched (paper); false: they only come first
+  double gray_near = 0;  // depth that maps to the brightest gray; both 0: from the bin or the data
   double gray_far = 0;
   int t1 = 40;                   // Algorithm 1, line 6
   double t2 = 0.4;               // Algorithm 1, line 9
@@ -33,8 +33,8 @@ struct SegmentationParameters
   double max_pixel_ratio = 1.3;
   double min_contour_ratio = 0.5;
   double max_contour_ratio = 1.6;
-  double edge_depth = 0.004;     // DepthEdges: smallest jump, metres
-  double neck = 0.6;             // DepthEdges: narrowest passage within a segment, of the width of its narrower end
+  double edge_depth = 0.004;       // DepthEdges: smallest jump, metres
+  double neck = 0.6;               // DepthEdges: narrowest passage within a segment, of the width of its narrower end
   double min_segment_area = 0.02;  // of the largest one-sided view
 
   void visit(ParameterVisitor& v);
@@ -42,25 +42,25 @@ struct SegmentationParameters
 
 struct Segment
 {
-  int label = 0;            ///< in Segmentation::labels
+  int label = 0;  ///< in Segmentation::labels
   int pixels = 0;
-  double area = 0;          ///< sum of pixel areas perpendicular to the rays, square metres
-  double contour = 0;       ///< metres
-  double mean_depth = 0;    ///< metres
+  double area = 0;        ///< sum of pixel areas perpendicular to the rays, square metres
+  double contour = 0;     ///< metres
+  double mean_depth = 0;  ///< metres
 };
 
 struct Segmentation
 {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> gray;     ///< 255 = near end, 1 = far end, 0 = no data
-  std::vector<std::int32_t> labels;   ///< 0: none or border
+  std::vector<std::uint8_t> gray;    ///< 255 = near end, 1 = far end, 0 = no data
+  std::vector<std::int32_t> labels;  ///< 0: none or border
   std::vector<Segment> segments;
 };
 
-/// Depth mapped to gray over the effective range (Section 2.2.1): gray_near -> 255, gray_far -> 1, no data -> 0. Where the
-/// parameters give no range it is taken from the bin (floor to rim, clipped to the data), else from the 1st and 99th
-/// percentile of the data.
+/// Depth mapped to gray over the effective range (Section 2.2.1): gray_near -> 255, gray_far -> 1, no data -> 0. Where
+/// the parameters give no range it is taken from the bin (floor to rim, clipped to the data), else from the 1st and
+/// 99th percentile of the data.
 std::vector<std::uint8_t> depthToGray(const DepthGrid& grid, const SegmentationParameters& parameters, const Bin* bin);
 
 /// The twelve steps of Algorithm 1 on a gray image; labels 1..n, 0 = border or background.
@@ -79,8 +79,8 @@ struct CandidateTarget
   double priority = 0;       ///< larger first: visible area and height
 };
 
-/// Segments whose pixel and contour counts are similar to those of a one-sided view of the part (views are scaled to the
-/// segment's depth), best first. \param all also those that fail (with their ratios), after the others
+/// Segments whose pixel and contour counts are similar to those of a one-sided view of the part (views are scaled to
+/// the segment's depth), best first. \param all also those that fail (with their ratios), after the others
 std::vector<CandidateTarget> selectCandidates(const Segmentation& segmentation, const DepthGrid& grid,
                                               const TrainedModel& model, const SegmentationParameters& parameters,
                                               bool all = false);

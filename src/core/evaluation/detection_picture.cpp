@@ -140,7 +140,7 @@ public:
     picture_.convertTo(picture_, CV_8U);
     for (std::size_t k = drawings.size(); k-- > 0;)
       outline(drawings[k], rankColor(k));
-    for (std::size_t k = drawings.size(); k-- > 0;)
+    for (std::size_t k = 0; k < drawings.size(); ++k)
       writeLabel(drawings[k], k, detections[k].score);
   }
 
@@ -209,10 +209,21 @@ private:
     std::snprintf(text.data(), text.size(), "%zu: %.2f", rank + 1, score);
     int baseline = 0;
     const cv::Size size = cv::getTextSize(text.data(), cv::FONT_HERSHEY_SIMPLEX, 0.5, 1, &baseline);
-    const cv::Point at(static_cast<int>(sum.x / count) - size.width / 2,
-                       static_cast<int>(sum.y / count) + size.height / 2);
+    const cv::Point centre(static_cast<int>(sum.x / count), static_cast<int>(sum.y / count));
+    const cv::Point at =
+        freePlace({centre - cv::Point(size.width / 2, size.height / 2), size}).tl() + cv::Point(0, size.height);
     cv::putText(picture_, text.data(), at, cv::FONT_HERSHEY_SIMPLEX, 0.5, cv::Scalar::all(0), 3, cv::LINE_AA);
     cv::putText(picture_, text.data(), at, cv::FONT_HERSHEY_SIMPLEX, 0.5, cv::Scalar::all(255), 1, cv::LINE_AA);
+  }
+
+  /// The wanted place of a label, or the next one below that no better rank has taken.
+  cv::Rect freePlace(cv::Rect place)
+  {
+    const auto taken = [&](const cv::Rect& other) { return (other & place).area() > 0; };
+    while (place.y + place.height < picture_.rows && std::any_of(labels_.begin(), labels_.end(), taken))
+      place.y += 2;
+    labels_.push_back(place);
+    return place;
   }
 
   const DepthGrid& grid_;
@@ -220,6 +231,7 @@ private:
   PinholeCamera camera_;
   cv::Mat picture_;
   cv::Mat nearest_;
+  std::vector<cv::Rect> labels_;
 };
 
 /// The text under the picture, broken where it is too long.
