@@ -10,25 +10,33 @@ std::vector<Option> detectorOptions()
 {
   return {
       {"--preset", "NAME", Values::One, "paper, fast or accurate (default fast)"},
-      {"--config", "FILE.yaml", Values::One, "parameters that differ from the preset"},
+      {"--config", "FILE.yaml", Values::One, "parameters that differ from the preset, under detector:"},
       {"--threads", "N", Values::One, "threads to use; 0: all processors (default)"},
       {"--set", "KEY=VALUE", Values::Assignments, "single parameters, last word; 'bin_picking parameters' lists them"}};
 }
 
 DetectorParameters detectorParameters(const Arguments& arguments)
 {
-  DetectorParameters parameters = DetectorParameters::preset(arguments.value("--preset", "fast"));
-  applyConfigFile(arguments, visitor(parameters));
+  Configuration configuration;
+  DetectorParameters& parameters = configuration.detector;
+  parameters = DetectorParameters::preset(arguments.value("--preset", "fast"));
+  applyConfigFile(arguments, configuration);
   if (arguments.has("--threads"))
     parameters.num_threads = parseInteger(arguments.value("--threads"), "--threads", 0, 1024);
   applyAssignments(arguments, visitor(parameters));
   return parameters;
 }
 
-void applyConfigFile(const Arguments& arguments, const VisitFunction& visit)
+void Configuration::visit(ParameterVisitor& v)
+{
+  v.group("training", training);
+  v.group("detector", detector);
+}
+
+void applyConfigFile(const Arguments& arguments, Configuration& configuration)
 {
   if (arguments.has("--config"))
-    setParametersFromYaml(visit, readText(arguments.value("--config")), arguments.value("--config"));
+    setParametersFromYaml(visitor(configuration), readText(arguments.value("--config")), arguments.value("--config"));
 }
 
 void applyAssignments(const Arguments& arguments, const VisitFunction& visit)

@@ -10,6 +10,7 @@
 #include "bin_picking_perception/common/parameters.hpp"
 #include "bin_picking_perception/detector_parameters.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
+#include "bin_picking_perception/model/training_parameters.hpp"
 
 namespace bin_picking::tools
 {
@@ -19,8 +20,18 @@ std::vector<Option> detectorOptions();
 /// The preset, changed by the configuration file, then by --threads, then by --set.
 DetectorParameters detectorParameters(const Arguments& arguments);
 
+/// The groups of a configuration file. One file may serve training and detection: each takes its own group, and the other
+/// is checked all the same.
+struct Configuration
+{
+  TrainingParameters training;
+  DetectorParameters detector;
+
+  void visit(ParameterVisitor& v);
+};
+
 /// --config, if it was given. \throws FileError, ParameterError
-void applyConfigFile(const Arguments& arguments, const VisitFunction& visit);
+void applyConfigFile(const Arguments& arguments, Configuration& configuration);
 /// --set. \throws ParameterError
 void applyAssignments(const Arguments& arguments, const VisitFunction& visit);
 

@@ -13,9 +13,14 @@ namespace bin_picking::tools
 {
 namespace
 {
-void print(const Arguments& arguments, const VisitFunction& visit)
+/// The table lists what --set takes; the YAML what --config reads, where each command has a group of its own.
+template <typename Parameters>
+void print(const Arguments& arguments, const std::string& group, Parameters& parameters)
 {
-  std::cout << (arguments.has("--markdown") ? toMarkdown(visit) : toYaml(visit));
+  if (arguments.has("--markdown"))
+    std::cout << toMarkdown(visitor(parameters));
+  else
+    std::cout << toYaml([&](ParameterVisitor& v) { v.group(group, parameters); });
 }
 
 void parameters(const Arguments& arguments)
@@ -27,11 +32,11 @@ void parameters(const Arguments& arguments)
   TrainingParameters training;
   simulation::DemoSceneParameters scene;
   if (command == "detect")
-    print(arguments, visitor(detector));
+    print(arguments, "detector", detector);
   else if (command == "train")
-    print(arguments, visitor(training));
+    print(arguments, "training", training);
   else if (command == "demo-scene")
-    print(arguments, visitor(scene));
+    print(arguments, "demo_scene", scene);
   else
     throw UsageError("--of is '" + command + "', but it must be one of: detect, train, demo-scene");
 }

@@ -45,10 +45,11 @@ PartDefinition partFrom(const Arguments& arguments)
 /// Defaults, then the part's own choices, then those of the command line.
 TrainingParameters trainingParameters(const Arguments& arguments, const PartDefinition& part)
 {
-  TrainingParameters parameters;
+  Configuration configuration;
+  TrainingParameters& parameters = configuration.training;
   if (!part.training_yaml.empty())
     setParametersFromYaml(visitor(parameters), part.training_yaml, "the part.yaml of " + part.name);
-  applyConfigFile(arguments, visitor(parameters));
+  applyConfigFile(arguments, configuration);
   if (arguments.has("--leaf"))
     setParameter(visitor(parameters), "leaf", arguments.value("--leaf"));
   applyAssignments(arguments, visitor(parameters));
@@ -135,7 +136,7 @@ Command trainCommand()
            {"PART_DIR|MESH"},
            {{"--unit", "UNIT", Values::One, "unit of a bare mesh: m, cm, mm or inch (part.yaml states its own)"},
             {"--leaf", "LENGTH", Values::One, "distance of the model's points, e.g. 3mm (default: from the size)"},
-            {"--config", "FILE.yaml", Values::One, "training parameters that differ from the default"},
+            {"--config", "FILE.yaml", Values::One, "training parameters that differ from the default, under training:"},
             {"--set", "KEY=VALUE", Values::Assignments, "single training parameters, last word"},
             {"--threads", "N", Values::One, "threads to use; 0: all processors (default)"},
             {"-o", "MODEL", Values::One, "file to write (default: NAME.model in the working folder)"}},

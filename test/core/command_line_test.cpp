@@ -240,6 +240,21 @@ TEST_F(CommandLine, PrintedParametersCanBeReadBack)
   EXPECT_EQ(readJson(file("preset.json")).at("detections"), readJson(file("config.json")).at("detections"));
 }
 
+TEST_F(CommandLine, OneConfigurationServesTrainingAndDetection)
+{
+  const std::string paper = std::string(BIN_PICKING_SOURCE_DIR) + "/config/paper/three_way_tube.yaml";
+  const Outcome detected = run(detectScene("--preset paper --config " + paper + " --json " + file("paper.json")));
+  ASSERT_EQ(detected.exit_code, 0) << detected.text;
+  EXPECT_LE(readJson(file("paper.json")).at("detections").size(), 5u);
+
+  std::ofstream(file("coarse.yaml")) << "training: {leaf: 7mm}\ndetector: {max_detections: 2}\n";
+  const Outcome trained = run("train " + TUBE + " --config " + file("coarse.yaml") + " -o " + file("coarse.model"));
+  ASSERT_EQ(trained.exit_code, 0) << trained.text;
+  EXPECT_NE(trained.text.find("7.000 mm"), std::string::npos) << trained.text;
+  std::ofstream(file("unknown.yaml")) << "training: {laef: 7mm}\n";
+  expectFailure(detectScene("--config " + file("unknown.yaml")), 2, {"laef", "did you mean"});
+}
+
 TEST_F(CommandLine, NothingFoundIsNoFailure)
 {
   ASSERT_EQ(run("demo-scene " + TUBE + " --count 0 --size 400x320 -o " + file("empty")).exit_code, 0);
@@ -258,7 +273,7 @@ TEST_F(CommandLine, DamagedInputIsAFailureWithASentence)
   expectFailure("detect --model " + file("broken.model") + " --cloud b.pcd", 1, {"broken.model"});
   std::ofstream(file("broken.pcd")) << "not a cloud";
   expectFailure("detect --model " + model() + " --cloud " + file("broken.pcd"), 1, {"broken.pcd"});
-  std::ofstream(file("broken.yaml")) << "voting: {wieght: 2}\n";
+  std::ofstream(file("broken.yaml")) << "detector: {voting: {wieght: 2}}\n";
   expectFailure(detectScene("--config " + file("broken.yaml")), 2, {"wieght", "did you mean"});
 }
 
