@@ -3,8 +3,9 @@
 # SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 """Writes the meshes of the demo parts: config/parts/<part>/<part>.stl (binary STL, millimetres).
 
-Both parts are lofts: a row of closed rings with the same number of vertices, each linked to the next. Neighbouring lofts
-share the exact vertices of their seams, so the surface is watertight by construction; it is checked before it is written.
+Both parts are lofts: a row of closed rings with the same number of vertices, each linked to the next. Neighbouring
+lofts share the exact vertices of their seams, so the surface is watertight by construction; it is checked before it is
+written.
 
     scripts/make_demo_parts.py [--output config/parts]
 """
@@ -26,10 +27,11 @@ def loft(rings, closed=False):
     leader = rings if closed else rings[:-1]
     a, b = leader, np.roll(leader, -1, axis=1)
     d, c = follower, np.roll(follower, -1, axis=1)
-    return np.concatenate([np.stack([a, b, c], axis=2).reshape(-1, 3, 3), np.stack([a, c, d], axis=2).reshape(-1, 3, 3)])
+    pairs = ((a, b, c), (a, c, d))
+    return np.concatenate([np.stack(corners, axis=2).reshape(-1, 3, 3) for corners in pairs])
 
 
-# Three-way tube ---------------------------------------------------------------------------------------------------------
+# Three-way tube -----------------------------------------------------------------------------------------------------
 # Run along x, branch along +z, all three arms of equal radii: their surfaces meet in the planes x = 0 and z = |x|.
 
 BODY_RADIUS, BORE_RADIUS, COLLAR_RADIUS = 15.0, 11.0, 17.5
@@ -73,7 +75,7 @@ def three_way_tube():
     return np.concatenate(parts)
 
 
-# Upright column ---------------------------------------------------------------------------------------------------------
+# Upright column -----------------------------------------------------------------------------------------------------
 # Base plate 60 x 44 mm in z = 0, axis z. One rib on +x and a flat on -x leave no symmetry.
 
 PLATE, PLATE_CORNER, PLATE_HEIGHT = (30.0, 22.0), 7.0, 8.0
@@ -145,7 +147,7 @@ def upright_column():
     return loft([np.column_stack([xy, np.full(len(t), float(z))]) for xy, z in outline], closed=True)
 
 
-# Checks and output ------------------------------------------------------------------------------------------------------
+# Checks and output --------------------------------------------------------------------------------------------------
 
 def weld(triangles):
     """Vertices and index triples; triangles that collapsed to a line are dropped."""
