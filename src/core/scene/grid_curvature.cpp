@@ -94,7 +94,8 @@ private:
   {
     if (column < 0 || row < 0 || column >= side_ || row >= side_)
       return;
-    std::uint8_t& seen = seen_[static_cast<std::size_t>(row * side_ + column)];
+    std::uint8_t& seen =
+        seen_[static_cast<std::size_t>(row) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(column)];
     if (seen || (grid_.point(pixel) - centre).squaredNorm() > radius_ * radius_)
       return;
     seen = 1;

@@ -64,7 +64,6 @@ struct Reference
 
 Eigen::Vector3f planeNormal(const Sums& sums, double n, const Reference& reference)
 {
-  const Eigen::Vector3f none = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
   const double s = sums[0] / n;
   const double t = sums[1] / n;
   const double q = sums[2] / n;
@@ -75,7 +74,7 @@ Eigen::Vector3f planeNormal(const Sums& sums, double n, const Reference& referen
   const double tq = sums[7] - sums[1] * q;
   const double determinant = ss * tt - st * st;
   if (n < MIN_PLANE_PIXELS || determinant < MIN_SPREAD * (ss + tt) * (ss + tt))
-    return none;
+    return Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
   const double a = (tt * sq - st * tq) / determinant;
   const double b = (ss * tq - st * sq) / determinant;
   const double c = q + reference.q - a * (s + reference.s) - b * (t + reference.t);
@@ -124,7 +123,7 @@ private:
     {
       const DepthGrid& grid = estimator.grid_;
       const PinholeCamera& c = grid.camera;
-      reference = {((area.u_begin + area.u_end) / 2 - c.cx) / c.fx, ((area.v_begin + area.v_end) / 2 - c.cy) / c.fy, 0};
+      reference = {(area.u_begin - c.cx) / c.fx, (area.v_begin - c.cy) / c.fy, 0};
       sums_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(area.v_end - area.v_begin));
       bool has_depth = false;
       for (int v = area.v_begin; v < area.v_end; ++v)
@@ -165,7 +164,7 @@ private:
 
   int window(float z) const
   {
-    return std::clamp(static_cast<int>(pixels_per_inverse_depth_ / static_cast<double>(z) + 0.5), 1, MAX_WINDOW);
+    return std::clamp(static_cast<int>(std::lround(pixels_per_inverse_depth_ / static_cast<double>(z))), 1, MAX_WINDOW);
   }
 
   int largestWindow() const

@@ -45,15 +45,13 @@ void requireHeader(const std::string& path)
 
 void requireFields(const pcl::PCLPointCloud2& blob, const std::string& path)
 {
-  for (const std::string name : {"x", "y", "z"})
-  {
-    bool found = false;
-    for (const auto& field : blob.fields)
-      found = found || (field.name == name && field.datatype == pcl::PCLPointField::FLOAT32 && field.count == 1);
-    if (!found)
-      throw FileError("The point cloud " + path + " has no field '" + name +
-                      "' of 32-bit floats; the fields x, y and z are needed. Save it again as pcl::PointXYZ.");
-  }
+  std::set<std::string> missing = {"x", "y", "z"};
+  for (const auto& field : blob.fields)
+    if (field.datatype == pcl::PCLPointField::FLOAT32 && field.count == 1)
+      missing.erase(field.name);
+  if (!missing.empty())
+    throw FileError("The point cloud " + path + " has no field '" + *missing.begin() +
+                    "' of 32-bit floats; the fields x, y and z are needed. Save it again as pcl::PointXYZ.");
 }
 }  // namespace
 

@@ -20,20 +20,20 @@ constexpr float LEVELS_PER_PIXEL = 16;  // resolution of the distance that order
 
 /// Bridges runs of at most MAX_HOLE missing pixels between near depths, so that a missing pixel does not act as an
 /// edge.
-void fillHoles(DepthGrid& grid, int begin, int step, int count, float edge_depth)
+void fillHoles(std::vector<float>& depth, std::size_t begin, std::size_t step, std::size_t count, float edge_depth)
 {
-  int last = -1;
-  for (int k = 0; k < count; ++k)
+  std::size_t last = count;  // none yet
+  for (std::size_t k = 0; k < count; ++k)
   {
-    const auto i = static_cast<std::size_t>(begin + k * step);
-    if (std::isnan(grid.z[i]))
+    const float z = depth[begin + k * step];
+    if (std::isnan(z))
       continue;
-    const int hole = k - last - 1;
-    const float previous = last < 0 ? 0 : grid.z[static_cast<std::size_t>(begin + last * step)];
-    if (last >= 0 && hole > 0 && hole <= MAX_HOLE && std::abs(grid.z[i] - previous) <= edge_depth)
-      for (int m = 1; m <= hole; ++m)
-        grid.z[static_cast<std::size_t>(begin + (last + m) * step)] =
-            previous + (grid.z[i] - previous) * static_cast<float>(m) / static_cast<float>(hole + 1);
+    const std::size_t hole = last < count ? k - last - 1 : 0;
+    const float previous = last < count ? depth[begin + last * step] : z;
+    if (hole > 0 && hole <= MAX_HOLE && std::abs(z - previous) <= edge_depth)
+      for (std::size_t m = 1; m <= hole; ++m)
+        depth[begin + (last + m) * step] =
+            previous + (z - previous) * static_cast<float>(m) / static_cast<float>(hole + 1);
     last = k;
   }
 }
@@ -41,10 +41,12 @@ void fillHoles(DepthGrid& grid, int begin, int step, int count, float edge_depth
 DepthGrid withoutSmallHoles(const DepthGrid& grid, double edge_depth)
 {
   DepthGrid filled = grid;
-  for (int v = 0; v < grid.height; ++v)
-    fillHoles(filled, v * grid.width, 1, grid.width, static_cast<float>(edge_depth));
-  for (int u = 0; u < grid.width; ++u)
-    fillHoles(filled, u, grid.width, grid.height, static_cast<float>(edge_depth));
+  const auto w = static_cast<std::size_t>(grid.width);
+  const auto h = static_cast<std::size_t>(grid.height);
+  for (std::size_t v = 0; v < h; ++v)
+    fillHoles(filled.z, v * w, 1, w, static_cast<float>(edge_depth));
+  for (std::size_t u = 0; u < w; ++u)
+    fillHoles(filled.z, u, w, h, static_cast<float>(edge_depth));
   return filled;
 }
 
@@ -187,7 +189,7 @@ std::vector<std::int32_t> depthEdgeSegments(const DepthGrid& grid, double edge_d
   const cv::Mat distance = distanceToBlack(interior(filled, runs));
   std::vector<int> level(grid.size());
   std::transform(distance.begin<float>(), distance.end<float>(), level.begin(),
-                 [](float d) { return static_cast<int>(d * LEVELS_PER_PIXEL + 0.5f); });
+                 [](float d) { return cvRound(d * LEVELS_PER_PIXEL); });
   Basins basins(neck);
   const std::vector<int> basin_of = grow(filled, runs, level, basins);
   return numbered(grid, basin_of, basins);

@@ -66,15 +66,14 @@ void fillSpecks(cv::Mat mask)
 double contourPixels(const Segmentation& segmentation, int label, const Box& box)
 {
   // One pixel of margin closes contours at the frame.
-  const int width = box.u_max - box.u_min + 3;
-  const int height = box.v_max - box.v_min + 3;
-  std::vector<std::uint8_t> mask(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
-  for (int v = box.v_min; v <= box.v_max; ++v)
+  cv::Mat mask = cv::Mat::zeros(box.v_max - box.v_min + 3, box.u_max - box.u_min + 3, CV_8U);
+  const std::int32_t* row =
+      &segmentation.labels[static_cast<std::size_t>(box.v_min) * static_cast<std::size_t>(segmentation.width)];
+  for (int v = box.v_min; v <= box.v_max; ++v, row += segmentation.width)
     for (int u = box.u_min; u <= box.u_max; ++u)
-      mask[static_cast<std::size_t>((v - box.v_min + 1) * width + u - box.u_min + 1)] =
-          segmentation.labels[static_cast<std::size_t>(v * segmentation.width + u)] == label;
-  fillSpecks(cv::Mat(height, width, CV_8U, mask.data()));
-  return contourLength(mask, width, height);
+      mask.at<std::uint8_t>(v - box.v_min + 1, u - box.u_min + 1) = row[u] == label;
+  fillSpecks(mask);
+  return contourLength({mask.begin<std::uint8_t>(), mask.end<std::uint8_t>()}, mask.cols, mask.rows);
 }
 
 std::vector<Segment> measureSegments(const Segmentation& segmentation, const DepthGrid& grid)
