@@ -25,18 +25,21 @@ if [ "$(id -u)" -ne 0 ]; then
   as_root=(sudo)
 fi
 
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
 # Another installation may hold apt's lock (unattended upgrades do so after boot).
 apt_get() {
   local attempt
   for attempt in 1 2 3 4 5 6 7 8 9 10; do
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=60 "$@" && return
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=60 "$@" >"$log" 2>&1 && return
+    tail -n 5 "$log" >&2
     echo "setup: apt-get $1 failed (attempt $attempt of 10), trying again in 15 s" >&2
     sleep 15
   done
   return 1
 }
 
-echo "setup: installing ${#missing[@]} packages"
+echo "setup: installing ${#missing[@]} packages (a fresh system takes some minutes)"
 apt_get update || fail "apt-get update failed; is there a network and a package source?"
 mapfile -t unknown < <(comm -23 <(printf '%s\n' "${missing[@]}") \
   <(apt-cache policy "${missing[@]}" | awk '/^[^ ]/ { name = $1; sub(":$", "", name) }

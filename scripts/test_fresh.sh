@@ -21,14 +21,14 @@ else
   trap 'umount "$root/proc" "$root/dev/shm" "$root/dev" 2>/dev/null || true; rm -rf --one-file-system "$root"' EXIT
 fi
 
-# The host's own package sources and apt settings (proxy, certificates).
+# The host's own package sources and apt settings (proxy, certificates, dates).
 sources=()
 for file in /etc/apt/sources.list /etc/apt/sources.list.d/*.sources /etc/apt/sources.list.d/*.list; do
   [ -s "$file" ] && sources+=("$file")
 done
 options=()
 for file in /etc/apt/apt.conf /etc/apt/apt.conf.d/*; do
-  if [ -f "$file" ] && grep -qiE 'proxy|verify' "$file"; then options+=("--aptopt=$file"); fi
+  if [ -f "$file" ] && grep -qiE 'proxy|verify|check-' "$file"; then options+=("--aptopt=$file"); fi
 done
 echo "test_fresh: making a minimal Debian 12 in $root"
 mmdebstrap --quiet --variant=minbase --include=ca-certificates "${options[@]}" bookworm "$root" "${sources[@]}"
