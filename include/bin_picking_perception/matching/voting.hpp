@@ -15,12 +15,12 @@ class Executor;
 
 struct VotingParameters
 {
-  double reference_share = 1.0 / 15;
-  int min_references = 40;
+  double reference_share = 0.033;
+  int min_references = 12;
   double max_pair_distance = 1.0;
   int weight = 1;
   double curvature_spread = 0.3;
-  bool curvature_wildcard = true;
+  bool curvature_wildcard = false;
   int max_bucket = 0;
   int peaks_per_reference = 2;
   double min_peak_share = 0.7;

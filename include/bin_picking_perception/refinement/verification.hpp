@@ -16,11 +16,11 @@ struct VerificationParameters
   bool enabled = true;                // false: only the matching rate decides, as in the paper
   double match_distance = 0.005;
   double min_matching_rate = 0.5;
-  double depth_tolerance = 0.35;
-  double noise_tolerance = 2.5;
+  double depth_tolerance = 0.1;
+  double noise_tolerance = 5.5;
   double max_normal_angle = 0.7;
   double min_outline_share = 0.35;
-  double min_score = 0.52;
+  double min_score = 0.5;
   double min_visible_fraction = 0.35;
   double min_inlier_share = 0.6;
   double max_violation_share = 0.2;
@@ -60,8 +60,10 @@ OrientedPoints facingPoints(const TrainedModel& model, const Pose& T_camera_obje
 
 /// \param facing points of the part that face the camera (facingPoints)
 /// \param tolerance of the distance to the surface, metres
+/// \param grid what belongs to parts; \param surroundings the same grid with the bin and its floor, which are no evidence for
+///   a part but may contradict it
 PoseEvidence gatherEvidence(const OrientedPoints& facing, const Pose& T_camera_object, const DepthGrid& grid,
-                            const std::vector<Eigen::Vector3f>& normals, double tolerance,
+                            const DepthGrid& surroundings, const std::vector<Eigen::Vector3f>& normals, double tolerance,
                             const VerificationParameters& parameters);
 
 /// What the scene does just outside of the part's outline, point by point along it.
@@ -69,9 +71,10 @@ struct OutlineEvidence
 {
   int ends = 0;       ///< the scene drops behind the part: an edge, as there should be
   int continues = 0;  ///< the surface goes on: the part is not there, or it touches a neighbour of equal height
-  int hidden = 0;     ///< something nearer, or no data: says nothing
+  int hidden = 0;     ///< something nearer, or no data: speaks neither for nor against
 
-  double share() const { return ends + continues > 0 ? static_cast<double>(ends) / (ends + continues) : 0; }
+  /// 1 where the outline says nothing: a single part on the cropped floor of a bin has no data around it, and is right.
+  double share() const { return ends + continues > 0 ? static_cast<double>(ends) / (ends + continues) : 1; }
 };
 
 /// A pose on the middle of a larger surface explains all its points; only the outline tells that it is wrong.

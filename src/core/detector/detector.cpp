@@ -66,6 +66,14 @@ SegmentationView viewOf(Segmentation&& segmentation, const std::vector<Candidate
   return view;
 }
 
+DetectionResult emptyBin(DetectionResult&& result, double measured, int required)
+{
+  result.code = DetectionCode::BinEmpty;
+  result.message = "the bin is empty: about " + std::to_string(static_cast<long>(measured)) +
+                   " points lie inside the limits, fewer than " + std::to_string(required) + " (input/empty_bin_points)";
+  return std::move(result);
+}
+
 void summarize(DetectionResult& result)
 {
   const std::string late = result.partial ? "; the deadline passed, so this is what was ready" : "";
@@ -87,26 +95,20 @@ DetectionResult Detector::detect(const DepthGrid& grid, const Request& request) 
   DetectionResult result;
   StageClock clock(result);
 
-  DepthGrid region = grid;
-  cropToRegion(region, parameters_.input, bin);
-  const auto measured = std::count_if(region.z.begin(), region.z.end(), [](float z) { return !std::isnan(z); });
-  clock.count("points", static_cast<double>(measured));
-  clock.lap("region");
-  if (measured < parameters_.input.empty_bin_points)
-  {
-    result.code = DetectionCode::BinEmpty;
-    result.message = "the bin is empty: " + std::to_string(measured) + " points lie inside the limits, fewer than " +
-                     std::to_string(parameters_.input.empty_bin_points) + " (input/empty_bin_points)";
-    clock.finish();
-    return result;
-  }
-
-  const int comparison_cell = comparisonCell(region, models_);
+  const int comparison_cell = comparisonCell(grid, models_);
   std::vector<Assessed> assessed;
   for (const std::size_t index : indices)
   {
     const TrainedModel& model = *models_[index];
-    const PreparedScene scene = prepareScene(region, model, parameters_, executor_, clock);
+    PreparedScene scene = reduceScene(grid, bin, model, parameters_, clock);
+    const double measured = measuredPoints(scene);
+    if (measured < parameters_.input.empty_bin_points)
+    {
+      clock.finish();
+      return emptyBin(std::move(result), measured, parameters_.input.empty_bin_points);
+    }
+    clock.count("points", measured);
+    describeScene(scene, model, parameters_, executor_, clock);
     Segmentation segmentation = segmentScene(scene.grid, parameters_.segmentation, bin);
     clock.count("segments", static_cast<double>(segmentation.segments.size()));
     const auto candidates = selectCandidates(segmentation, scene.grid, model, parameters_.segmentation);

@@ -47,7 +47,9 @@ DetectorParameters paperPreset()
 DetectorParameters accuratePreset()
 {
   DetectorParameters p;
-  p.voting.reference_share = 0.2;
+  p.voting.reference_share = 0.1;
+  p.voting.min_references = 40;
+  p.voting.curvature_wildcard = true;
   p.voting.peaks_per_reference = 3;
   p.clustering.max_clusters = 600;
   p.verification.max_refined = 240;

@@ -19,7 +19,8 @@ double score(const PoseEvidence& evidence, double outline_share, const Verificat
   // The inlier share says how right the pose is, the visible fraction how sure that is, and the outline whether it is the
   // whole of the thing that was seen; no one of them ranks well alone.
   constexpr double OUTLINE_WEIGHT = 0.3;
-  return evidence.inlierShare(parameters.unmeasured_weight) * std::sqrt(evidence.visibleFraction()) *
+  constexpr double VISIBLE_EXPONENT = 0.7;
+  return evidence.inlierShare(parameters.unmeasured_weight) * std::pow(evidence.visibleFraction(), VISIBLE_EXPONENT) *
          (1 - OUTLINE_WEIGHT * (1 - outline_share));
 }
 
@@ -40,7 +41,7 @@ std::vector<Hypothetical> mostPromising(const std::vector<Hypothetical>& poses, 
   std::vector<double> scores(poses.size());
   executor.forEach(poses.size(), [&](std::size_t i) {
     const OrientedPoints facing = facingPoints(model, poses[i].T_camera_object, COARSE_POINTS);
-    scores[i] = score(gatherEvidence(facing, poses[i].T_camera_object, scene.grid, scene.normals,
+    scores[i] = score(gatherEvidence(facing, poses[i].T_camera_object, scene.grid, scene.surroundings, scene.normals,
                                      UNREFINED * tolerance(scene, model, parameters), parameters),
                       1, parameters);
   });
@@ -76,8 +77,8 @@ OutlineEvidence outline(const Pose& T_camera_object, const PreparedScene& scene,
 {
   constexpr double NOISE_TOLERANCE = 3;  // standard deviations
   const double leaf = model.parameters.leaf;
-  return gatherOutlineEvidence(facingPoints(model, T_camera_object, model.surface.size()), T_camera_object, scene.grid, leaf,
-                               leaf + NOISE_TOLERANCE * scene.noise);
+  return gatherOutlineEvidence(facingPoints(model, T_camera_object, model.surface.size()), T_camera_object, scene.surroundings,
+                               leaf,                                leaf + NOISE_TOLERANCE * scene.noise);
 }
 
 void judge(Detection& detection, const PoseEvidence& evidence, const OutlineEvidence& outline,
@@ -110,7 +111,8 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
   detection.T_camera_object = refined.T_camera_object;
   detection.votes = pose.votes;
   const PoseEvidence evidence = gatherEvidence(facingPoints(model, refined.T_camera_object, FINE_POINTS), refined.T_camera_object,
-                                         scene.grid, scene.normals, tolerance(scene, model, verification), verification);
+                                         scene.grid, scene.surroundings, scene.normals, tolerance(scene, model, verification),
+                                         verification);
   detection.visible_fraction = evidence.visibleFraction();
   detection.rms = evidence.rms;
   detection.matching_rate = pose.region->is_candidate ?
@@ -125,12 +127,13 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
 }
 }  // namespace
 
-int comparisonCell(const DepthGrid& cropped, const std::vector<std::shared_ptr<const TrainedModel>>& models)
+int comparisonCell(const DepthGrid& raw, const std::vector<std::shared_ptr<const TrainedModel>>& models)
 {
   std::vector<float> depths;
-  for (const float z : cropped.z)
-    if (!std::isnan(z))
-      depths.push_back(z);
+  constexpr std::size_t EVERY = 31;  // enough for a median
+  for (std::size_t i = 0; i < raw.size(); i += EVERY)
+    if (!std::isnan(raw.z[i]))
+      depths.push_back(raw.z[i]);
   double leaf = 0;
   for (const auto& model : models)
     leaf = std::max(leaf, model->parameters.leaf);
@@ -138,7 +141,7 @@ int comparisonCell(const DepthGrid& cropped, const std::vector<std::shared_ptr<c
     return 1;
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
   std::nth_element(depths.begin(), middle, depths.end());
-  return std::max(1, static_cast<int>(std::lround(leaf / cropped.pitch(static_cast<double>(*middle)))));
+  return std::max(1, static_cast<int>(std::lround(leaf / raw.pitch(static_cast<double>(*middle)))));
 }
 
 std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, const PreparedScene& scene,

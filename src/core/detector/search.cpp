@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "bin_picking_perception/common/parallel.hpp"
@@ -9,16 +10,33 @@
 
 namespace bin_picking
 {
-PreparedScene prepareScene(const DepthGrid& cropped, const TrainedModel& model, const DetectorParameters& parameters,
-                           const Executor& executor, StageClock& clock)
+PreparedScene reduceScene(const DepthGrid& raw, const Bin* bin, const TrainedModel& model, const DetectorParameters& parameters,
+                          StageClock& clock)
+{
+  PreparedScene scene;
+  scene.reduction = reductionFactor(raw, model.parameters.leaf, parameters.preprocessing);
+  scene.surroundings = reduceGrid(raw, scene.reduction);
+  clock.lap("reduction");
+  scene.grid = scene.surroundings;
+  cropToRegion(scene.grid, parameters.input, bin);
+  clock.lap("region");
+  removeOutliers(scene.grid, parameters.preprocessing);
+  clock.lap("outliers");
+  return scene;
+}
+
+double measuredPoints(const PreparedScene& scene)
+{
+  const auto pixels = std::count_if(scene.grid.z.begin(), scene.grid.z.end(), [](float z) { return !std::isnan(z); });
+  return static_cast<double>(pixels) * scene.reduction * scene.reduction;
+}
+
+void describeScene(PreparedScene& scene, const TrainedModel& model, const DetectorParameters& parameters,
+                   const Executor& executor, StageClock& clock)
 {
   const TrainingParameters& trained = model.parameters;
-  PreparedScene scene;
-  scene.reduction = reductionFactor(cropped, trained.leaf, parameters.preprocessing);
-  scene.grid = reduceGrid(cropped, scene.reduction);
-  removeOutliers(scene.grid, parameters.preprocessing);
   scene.noise = estimateDepthNoise(scene.grid);
-  clock.lap("outliers");
+  clock.lap("noise");
   scene.normals = estimateGridNormals(scene.grid, trained.normal_radius, executor);
   clock.lap("normals");
   scene.samples = sampleScene(scene.grid, scene.normals, trained.leaf, parameters.preprocessing);
@@ -28,7 +46,6 @@ PreparedScene prepareScene(const DepthGrid& cropped, const TrainedModel& model, 
     estimateGridCurvature(scene.samples, scene.grid, scene.normals, trained.curvature_measure, trained.curvature_radius,
                           OPPOSITE_WALL_ANGLE, executor);
   clock.lap("curvature");
-  return scene;
 }
 
 namespace

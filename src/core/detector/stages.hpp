@@ -15,7 +15,8 @@ namespace bin_picking
 /// The scene as one model sees it: at its leaf, with its radii.
 struct PreparedScene
 {
-  DepthGrid grid;                        ///< working grid
+  DepthGrid surroundings;                ///< working grid with what lies outside of the region: bin, floor, table
+  DepthGrid grid;                        ///< working grid, only the region where parts are searched
   int reduction = 1;                     ///< raw pixels per pixel of the working grid
   std::vector<Eigen::Vector3f> normals;  ///< per pixel of the working grid
   double noise = 0;                      ///< of the depth, metres
@@ -40,8 +41,16 @@ struct Hypothetical
   const SearchRegion* region = nullptr;
 };
 
-PreparedScene prepareScene(const DepthGrid& cropped, const TrainedModel& model, const DetectorParameters& parameters,
-                           const Executor& executor, StageClock& clock);
+/// Reduction, limits and outliers; the rest follows only if there is anything.
+PreparedScene reduceScene(const DepthGrid& raw, const Bin* bin, const TrainedModel& model, const DetectorParameters& parameters,
+                          StageClock& clock);
+
+/// Measured raw pixels inside the region, estimated from the working grid.
+double measuredPoints(const PreparedScene& scene);
+
+/// Normals, samples and curvature.
+void describeScene(PreparedScene& scene, const TrainedModel& model, const DetectorParameters& parameters,
+                   const Executor& executor, StageClock& clock);
 
 std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentation& segmentation,
                                      const std::vector<CandidateTarget>& candidates, const DetectorParameters& parameters);
@@ -59,7 +68,7 @@ struct Assessed
 };
 
 /// Edge of the image cells by which poses are compared: about a leaf of the coarsest model, in raw pixels.
-int comparisonCell(const DepthGrid& cropped, const std::vector<std::shared_ptr<const TrainedModel>>& models);
+int comparisonCell(const DepthGrid& raw, const std::vector<std::shared_ptr<const TrainedModel>>& models);
 
 /// The most promising poses, refined by ICP and tested. Order: as given.
 std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, const PreparedScene& scene,

@@ -3,11 +3,14 @@
 #include "bin_picking_perception/matching/voting.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <mutex>
 
 #include "accumulator.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
+#include "fast_quantizer.hpp"
 #include "tile_index.hpp"
 
 namespace bin_picking
@@ -41,7 +44,7 @@ std::vector<int> chooseReferences(const std::vector<int>& candidates, const Voti
 
 namespace
 {
-constexpr std::size_t PREFETCH_AHEAD = 12;
+constexpr std::size_t BATCH = 32;
 
 /// Curvature bins that a scene point is looked up in.
 struct BinRange
@@ -63,6 +66,7 @@ struct Scene
   const OrientedPoints& points;
   const VotingParameters& parameters;
   std::vector<BinRange> bins;
+  FastQuantizer geometry;
   TileIndex tiles;
   float reach;
 };
@@ -97,20 +101,25 @@ std::size_t collectLookups(const Scene& scene, std::size_t reference, std::vecto
   const FeatureQuantizer& quantizer = scene.model.table.quantizer();
   const Eigen::Vector3f& p1 = scene.points.points[reference];
   const Eigen::Vector3f& n1 = scene.points.normals[reference];
-  const Eigen::Isometry3f T_local_camera = alignToLocalFrame(p1, n1);
+  const Eigen::Matrix3f R_local_camera = alignToLocalFrame(p1, n1).linear();
+  const Eigen::Vector3f to_y = R_local_camera.row(1);
+  const Eigen::Vector3f to_z = R_local_camera.row(2);
   const float squared_reach = scene.reach * scene.reach;
   const auto min_distance = static_cast<float>(scene.model.parameters.min_pair_distance);
+  const float squared_min = min_distance * min_distance;
   scene.tiles.forEachNear(p1, scene.reach, [&](int index) {
     const auto i = static_cast<std::size_t>(index);
-    const Eigen::Vector3f& p2 = scene.points.points[i];
-    const float squared_distance = (p2 - p1).squaredNorm();
-    if (i == reference || squared_distance > squared_reach || squared_distance < min_distance * min_distance)
+    const Eigen::Vector3f d = scene.points.points[i] - p1;
+    const float squared_distance = d.squaredNorm();
+    if (i == reference || squared_distance > squared_reach || squared_distance < squared_min)
       return;
-    const std::int64_t geometric = quantizer.geometricKey(pairFeature(p1, n1, 0, p2, scene.points.normals[i], 0));
+    const Eigen::Vector3f& n2 = scene.points.normals[i];
+    const float distance = std::sqrt(squared_distance);
+    const std::int64_t geometric = scene.geometry.geometricKey(distance, n1.dot(d) / distance, n2.dot(d) / distance, n1.dot(n2));
     if (geometric < 0)
       return;
     ++pairs;
-    const std::uint16_t alpha_s = toTurnFraction(alphaInLocalFrame(T_local_camera * p2));
+    const std::uint16_t alpha_s = turnFraction(-to_z.dot(d), to_y.dot(d));  // alphaInLocalFrame
     for (int q1 = scene.bins[reference].first; q1 <= scene.bins[reference].last; ++q1)
       for (int q2 = scene.bins[i].first; q2 <= scene.bins[i].last; ++q2)
         lookups.push_back({quantizer.key(geometric, q1, q2), alpha_s});
@@ -125,15 +134,32 @@ std::uint64_t castVotes(const Scene& scene, const std::vector<Lookup>& lookups, 
   const bool weighted = scene.model.parameters.feature == FeatureKind::CurPpf;
   const std::uint32_t weight = weighted ? static_cast<std::uint32_t>(scene.parameters.weight) : 1;
   std::uint64_t votes = 0;
-  for (std::size_t i = 0; i < lookups.size(); ++i)
+  // Both the slots and the entries behind them lie scattered in memory. They are fetched a batch ahead of their use.
+  struct Run
   {
-    if (i + PREFETCH_AHEAD < lookups.size())
-      table.prefetch(lookups[i + PREFETCH_AHEAD].key);
-    const FeatureTable::Slot slot = table.find(lookups[i].key);
-    if (slot.count == 0 || slot.count > longest)
-      continue;
-    accumulator.vote(table.entries() + slot.begin, slot.count, lookups[i].alpha_s, weight);
-    votes += slot.count;
+    FeatureTable::Slot slot;
+    std::uint16_t alpha_s;
+  };
+  std::array<Run, BATCH> runs;
+  for (std::size_t begin = 0; begin < lookups.size(); begin += BATCH)
+  {
+    const std::size_t end = std::min(lookups.size(), begin + BATCH);
+    for (std::size_t i = end; i < std::min(lookups.size(), end + BATCH); ++i)
+      table.prefetch(lookups[i].key);
+    std::size_t num_runs = 0;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const FeatureTable::Slot slot = table.find(lookups[i].key);
+      if (slot.count == 0 || slot.count > longest)
+        continue;
+      __builtin_prefetch(table.entries() + slot.begin);
+      runs[num_runs++] = {slot, lookups[i].alpha_s};
+    }
+    for (std::size_t i = 0; i < num_runs; ++i)
+    {
+      accumulator.vote(table.entries() + runs[i].slot.begin, runs[i].slot.count, runs[i].alpha_s, weight);
+      votes += runs[i].slot.count;
+    }
   }
   return votes;
 }
@@ -212,7 +238,7 @@ VotingResult voteForPoses(const TrainedModel& model, const OrientedPoints& point
 {
   const auto reach = static_cast<float>(parameters.max_pair_distance * model.diameter);
   const Scene scene{model, points, parameters, curvatureBins(points, curvature_complete, model.table.quantizer(), parameters),
-                    TileIndex(points.points, reach / 4), reach};
+                    FastQuantizer(model.table.quantizer()), TileIndex(points.points, reach / 4), reach};
   const auto num_angles = static_cast<int>(std::lround(2 * M_PI / model.parameters.d_angle));
   AccumulatorPool pool(model.points.size(), num_angles);
 

@@ -17,7 +17,7 @@ void VerificationParameters::visit(ParameterVisitor& v)
   v.field({"min_matching_rate", "", "smallest accepted matching rate", 0, 1}, min_matching_rate);
   v.field({"depth_tolerance", "", "distance to the surface that still explains a point, in leaves, noise not counted", 0.01, 5},
           depth_tolerance);
-  v.field({"noise_tolerance", "", "what is added to it, in standard deviations of the measured noise", 0, 10}, noise_tolerance);
+  v.field({"noise_tolerance", "", "what is added to it, in standard deviations of the measured noise", 0, 20}, noise_tolerance);
   v.field({"max_normal_angle", "rad", "a point whose normal is turned by more is not explained", 0.05, 3.2}, max_normal_angle);
   v.field({"min_visible_fraction", "", "smallest explained share of the surface that faces the camera; less accepts parts "
                                        "that are hidden more", 0, 1}, min_visible_fraction);
@@ -95,9 +95,10 @@ struct Finding
 class PointTest
 {
 public:
-  PointTest(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& normals, double tolerance,
-            const VerificationParameters& parameters)
+  PointTest(const DepthGrid& grid, const DepthGrid& surroundings, const std::vector<Eigen::Vector3f>& normals,
+            double tolerance, const VerificationParameters& parameters)
     : grid_(grid),
+      surroundings_(surroundings),
       normals_(normals),
       tolerance_(static_cast<float>(tolerance)),
       match_distance_(static_cast<float>(parameters.match_distance)),
@@ -120,7 +121,7 @@ public:
       if (grid_.inside(u + offset[0], v + offset[1]) &&
           explains(grid_.index(u + offset[0], v + offset[1]), point, normal, finding))
         return finding;
-    if (grid_.valid(center))
+    if (surroundings_.valid(center))
       finding.verdict = contradiction(center, point, normal);
     return finding;
   }
@@ -154,13 +155,16 @@ private:
     const auto pitch = static_cast<float>(grid_.pitch(static_cast<double>(point.z())));
     const float cosine = std::max(0.3f, -normal.dot(point) / point.norm());
     const float limit = tolerance_ / cosine + pitch * std::sqrt(1 - cosine * cosine) / cosine;
-    const float ahead = point.z() - grid_.z[static_cast<std::size_t>(pixel)];
+    const float ahead = point.z() - surroundings_.z[static_cast<std::size_t>(pixel)];
     if (ahead > limit)
       return Verdict::Occluded;
-    return ahead < -limit ? Verdict::Violated : Verdict::Misfit;
+    if (ahead < -limit)
+      return Verdict::Violated;
+    return grid_.valid(pixel) ? Verdict::Misfit : Verdict::Unmeasured;  // a part that touches the floor or a wall
   }
 
   const DepthGrid& grid_;
+  const DepthGrid& surroundings_;
   const std::vector<Eigen::Vector3f>& normals_;
   float tolerance_;
   float match_distance_;
@@ -195,11 +199,11 @@ void count(const Finding& finding, PoseEvidence& evidence)
 }  // namespace
 
 PoseEvidence gatherEvidence(const OrientedPoints& facing, const Pose& T_camera_object, const DepthGrid& grid,
-                            const std::vector<Eigen::Vector3f>& normals, double tolerance,
+                            const DepthGrid& surroundings, const std::vector<Eigen::Vector3f>& normals, double tolerance,
                             const VerificationParameters& parameters)
 {
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
-  const PointTest test(grid, normals, tolerance, parameters);
+  const PointTest test(grid, surroundings, normals, tolerance, parameters);
   PoseEvidence evidence;
   for (std::size_t i = 0; i < facing.size(); ++i)
   {
