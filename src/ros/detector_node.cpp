@@ -252,7 +252,7 @@ PickResult DetectorNode::process(const PickPipeline& pipeline, PickRequest pick,
 
 DetectorNode::Response DetectorNode::fail(const ReturnCode& code, const Job& job)
 {
-  ROS_WARN_STREAM(code.name << ": " << code.message << " " << code.hint);
+  ROS_WARN_STREAM_THROTTLE(1.0, code.name << ": " << code.message << " " << code.hint);
   Response response;
   response.code = code;
   if (job.cloud)

@@ -61,6 +61,10 @@ void ResultPublisher::broadcast(const PickResult& result, const OutputFrame& out
 {
   std::vector<geometry_msgs::TransformStamped> transforms;
   const auto add = [&](const std::string& name, const bin_picking::Pose& T_camera_frame) {
+    // A cloud may be used twice; tf keeps the first pose of a frame and time, and warns about every other one.
+    ros::Time& last_stamp = last_stamp_[name];
+    if (std::exchange(last_stamp, output.header.stamp) == output.header.stamp)
+      return;
     transforms.emplace_back();
     transforms.back().header = output.header;
     transforms.back().child_frame_id = tf_prefix_ + name;

@@ -5,6 +5,7 @@
 #include <ros/node_handle.h>
 #include <tf2_ros/transform_broadcaster.h>
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -41,6 +42,7 @@ private:
   ros::Publisher markers_;
   ros::Publisher segmentation_;
   tf2_ros::TransformBroadcaster broadcaster_;
+  std::map<std::string, ros::Time> last_stamp_;  ///< per tf frame
   std::shared_ptr<const MarkerMaker> marker_maker_;
   std::mutex mutex_;
 };

@@ -1,0 +1,464 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+// The detector from cloud to answer, within this process, and what it says to bad input.
+#include "detector_node.hpp"
+
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+#include <sensor_msgs/Image.h>
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <boost/filesystem.hpp>
+#include <functional>
+#include <future>
+#include <limits>
+
+#include "bin_picking_perception/common/error.hpp"
+#include "pose_conversion.hpp"
+#include "virtual_camera.hpp"
+
+namespace
+{
+using namespace bin_picking_ros;
+using bin_picking::Pose;
+using bin_picking_perception::GetBestGrasp;
+using sensor_msgs::PointCloud2;
+using test_clouds::Layout;
+using test_clouds::makeMessage;
+
+const double PATIENCE = 120;  // seconds; only reached when something is broken
+
+/// T_base_camera of the static transform: the camera looks straight down from 0.9 m.
+Pose cameraInBase()
+{
+  Pose pose = Pose::Identity();
+  pose.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  pose.translation() = Eigen::Vector3d(0.5, 0, 0.9);
+  return pose;
+}
+
+geometry_msgs::TransformStamped stamped(const std::string& parent, const std::string& child, const Pose& pose, const ros::Time& stamp)
+{
+  geometry_msgs::TransformStamped transform;
+  transform.header.frame_id = parent;
+  transform.header.stamp = stamp;
+  transform.child_frame_id = child;
+  transform.transform = toTransformMessage(pose);
+  return transform;
+}
+
+/// One node for all tests of this file: that it lives on after each of them is what they check.
+class DetectorNodeTest : public testing::Test
+{
+protected:
+  static void SetUpTestSuite()
+  {
+    scene_ = new test_clouds::BlockScene(test_clouds::renderBlock());
+    cache_ = (boost::filesystem::temp_directory_path() / boost::filesystem::unique_path()).string();
+    ros::NodeHandle nh("cell");
+    ros::NodeHandle private_nh("cell/detector");
+    setParameters(private_nh);
+    node_ = new DetectorNode(nh, private_nh);
+    camera_ = new test_clouds::VirtualCamera(nh, "points");
+    client_ = new ros::ServiceClient(private_nh.serviceClient<GetBestGrasp>("get_best_grasp"));
+    broadcaster_ = new tf2_ros::StaticTransformBroadcaster;
+    broadcaster_->sendTransform({stamped("base_link", "camera", cameraInBase(), ros::Time::now()),
+                                 stamped("island", "palm_tree", Pose::Identity(), ros::Time::now())});
+  }
+
+  static void TearDownTestSuite()
+  {
+    delete broadcaster_;
+    delete client_;
+    delete camera_;
+    delete node_;
+    delete scene_;
+    boost::filesystem::remove_all(cache_);
+  }
+
+  static void setParameters(const ros::NodeHandle& private_nh)
+  {
+    const std::string folder = std::string(BIN_PICKING_SOURCE_DIR) + "/test/ros/step_block";
+    private_nh.setParam("parts", std::vector<std::string>{folder});
+    private_nh.setParam("bin", folder + "/bin.yaml");
+    private_nh.setParam("gripper", std::string(BIN_PICKING_SOURCE_DIR) + "/config/grippers/ag95.yaml");
+    private_nh.setParam("model_cache", cache_);
+    private_nh.setParam("output_frame", "base_link");
+    private_nh.setParam("tf_prefix", "cell_");
+    private_nh.setParam("cloud_timeout", 20);
+    private_nh.setParam("deadline", 0);
+  }
+
+  /// Asks until the models are there.
+  static GetBestGrasp::Response ask(GetBestGrasp::Request request = GetBestGrasp::Request())
+  {
+    GetBestGrasp::Response response;
+    EXPECT_TRUE(client_->waitForExistence(ros::Duration(PATIENCE)));
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(PATIENCE);
+    do
+      EXPECT_TRUE(client_->call(request, response)) << "the call itself failed";
+    while (response.code.value == ReturnCode::NOT_READY && ros::WallTime::now() < end);
+    EXPECT_FALSE(response.code.name.empty());
+    EXPECT_EQ(response.grasps.empty(), response.code.value != ReturnCode::OK);
+    return response;
+  }
+
+  static void expectGoodAnswer()
+  {
+    camera_->start(makeMessage(scene_->grid));
+    const GetBestGrasp::Response response = ask();
+    camera_->stop();
+    ASSERT_EQ(response.code.value, ReturnCode::OK) << response.code.name << ": " << response.code.message;
+    ASSERT_FALSE(response.detections.empty());
+    expectTruth(fromMessage(response.detections[0].pose));
+  }
+
+  /// Within half a leaf and two degrees: the scene has no noise, its pixels are 1 mm wide.
+  static void expectTruth(const Pose& T_base_block)
+  {
+    const Pose difference = (cameraInBase() * scene_->T_camera_block).inverse() * T_base_block;
+    EXPECT_LT(difference.translation().norm(), 0.0015);
+    EXPECT_LT(Eigen::AngleAxisd(difference.linear()).angle(), 2 * M_PI / 180);
+  }
+
+  static test_clouds::BlockScene* scene_;
+  static DetectorNode* node_;
+  static test_clouds::VirtualCamera* camera_;
+  static ros::ServiceClient* client_;
+  static tf2_ros::StaticTransformBroadcaster* broadcaster_;
+  static std::string cache_;
+};
+
+test_clouds::BlockScene* DetectorNodeTest::scene_ = nullptr;
+DetectorNode* DetectorNodeTest::node_ = nullptr;
+test_clouds::VirtualCamera* DetectorNodeTest::camera_ = nullptr;
+ros::ServiceClient* DetectorNodeTest::client_ = nullptr;
+tf2_ros::StaticTransformBroadcaster* DetectorNodeTest::broadcaster_ = nullptr;
+std::string DetectorNodeTest::cache_;
+
+/// The next message of a topic, or the latched one.
+template <typename Message>
+boost::shared_ptr<const Message> receive(const std::string& topic)
+{
+  return ros::topic::waitForMessage<Message>(topic, ros::Duration(PATIENCE));
+}
+
+// First in this file: nothing has been published yet.
+TEST_F(DetectorNodeTest, SaysThatNoCloudHasCome)
+{
+  GetBestGrasp::Request request;
+  request.acquisition = GetBestGrasp::Request::USE_LATEST;
+  EXPECT_EQ(ask(request).code.value, ReturnCode::NO_CLOUD);
+  request.acquisition = GetBestGrasp::Request::WAIT_NEW;
+  request.deadline = ros::Duration(0.05);
+  EXPECT_EQ(ask(request).code.value, ReturnCode::NO_CLOUD);
+}
+
+TEST_F(DetectorNodeTest, FindsTheBlockAndItsGrasp)
+{
+  camera_->start(makeMessage(scene_->grid));
+  const auto response = ask();
+  camera_->stop();
+  ASSERT_EQ(response.code.value, ReturnCode::OK) << response.code.message;
+  EXPECT_EQ(response.header.frame_id, "base_link");
+  EXPECT_GT(response.age.toSec(), 0.0);
+  expectTruth(fromMessage(response.detections[0].pose));
+
+  ASSERT_FALSE(response.grasps.empty());
+  const auto& grasp = response.grasps[0];
+  EXPECT_EQ(grasp.grasp_id, "tower");
+  const Pose T_base_grasp = fromMessage(grasp.grasp);
+  const Pose T_base_object = fromMessage(response.detections[grasp.detection_index].pose);
+  // The part in the hand, as told, is the part where it was found.
+  EXPECT_TRUE((T_base_grasp * fromMessage(grasp.object_in_tip)).isApprox(T_base_object, 1e-6));
+  // The bin's floor is level in base_link: the approach goes straight down and the retreat straight up.
+  EXPECT_LT((T_base_grasp.linear().col(2) + Eigen::Vector3d::UnitZ()).norm(), 0.05);
+  EXPECT_NEAR(fromMessage(grasp.pre_grasp).translation().z() - T_base_grasp.translation().z(), 0.08, 0.002);
+  EXPECT_NEAR(fromMessage(grasp.retreat).translation().z() - T_base_grasp.translation().z(), 0.10, 0.002);
+  EXPECT_EQ(grasp.opening, 0.050);
+  EXPECT_EQ(response.timing.back().stage, "total");
+}
+
+TEST_F(DetectorNodeTest, TopicsAndTfSayTheSameAsTheAnswer)
+{
+  tf2_ros::Buffer buffer;
+  tf2_ros::TransformListener listener(buffer, true);
+  GetBestGrasp::Response response;
+  // The listener connects at its own pace; ask again until it has heard one of the answers.
+  camera_->start(makeMessage(scene_->grid));
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(PATIENCE);
+  do
+    response = ask();
+  while (!buffer.canTransform("base_link", "cell_pre_grasp", response.header.stamp, ros::Duration(1.0)) &&
+         ros::WallTime::now() < end);
+  camera_->stop();
+  ASSERT_EQ(response.code.value, ReturnCode::OK);
+  const auto& best = response.detections[0];
+  const auto part = buffer.lookupTransform("base_link", "cell_part_0", response.header.stamp);
+  EXPECT_TRUE(fromMessage(part.transform).isApprox(fromMessage(best.pose), 1e-6));
+  const auto grasp = buffer.lookupTransform("base_link", "cell_grasp", response.header.stamp);
+  EXPECT_TRUE(fromMessage(grasp.transform).isApprox(fromMessage(response.grasps[0].grasp), 1e-6));
+
+  const auto poses = receive<geometry_msgs::PoseArray>("/cell/detector/poses");
+  const auto detections = receive<bin_picking_perception::DetectionArray>("/cell/detector/detections");
+  const auto grasps = receive<bin_picking_perception::GraspArray>("/cell/detector/grasps");
+  const auto markers = receive<visualization_msgs::MarkerArray>("/cell/detector/markers");
+  ASSERT_TRUE(poses && detections && grasps && markers);
+  EXPECT_EQ(poses->header.stamp, response.header.stamp);
+  EXPECT_EQ(poses->header.frame_id, "base_link");
+  ASSERT_FALSE(poses->poses.empty());
+  EXPECT_EQ(poses->poses[0].position.x, best.pose.position.x);
+  EXPECT_EQ(detections->detections.size(), response.detections.size());
+  EXPECT_EQ(detections->code.value, ReturnCode::OK);
+  EXPECT_EQ(grasps->grasps.size(), response.grasps.size());
+  EXPECT_GT(markers->markers.size(), 3u);
+}
+
+TEST_F(DetectorNodeTest, SegmentationIsPublishedToSubscribers)
+{
+  ros::NodeHandle nh;
+  std::promise<sensor_msgs::Image> promise;
+  std::once_flag once;
+  const auto subscriber = nh.subscribe<sensor_msgs::Image>("/cell/detector/segmentation", 1, [&](const sensor_msgs::ImageConstPtr& image) {
+    std::call_once(once, [&] { promise.set_value(*image); });
+  });
+  auto image = promise.get_future();
+  camera_->start(makeMessage(scene_->grid));
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(PATIENCE);
+  do
+    ask();
+  while (image.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready && ros::WallTime::now() < end);
+  camera_->stop();
+  ASSERT_EQ(image.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  const auto picture = image.get();
+  EXPECT_EQ(picture.encoding, "rgb8");
+  EXPECT_EQ(picture.header.frame_id, "camera");
+  EXPECT_EQ(picture.data.size(), 3u * picture.width * picture.height);
+}
+
+TEST_F(DetectorNodeTest, OtherFramesOnRequest)
+{
+  camera_->start(makeMessage(scene_->grid));
+  GetBestGrasp::Request request;
+  request.output_frame = "camera";
+  const auto response = ask(request);
+  ASSERT_EQ(response.code.value, ReturnCode::OK);
+  EXPECT_EQ(response.header.frame_id, "camera");
+  expectTruth(cameraInBase() * fromMessage(response.detections[0].pose));
+  request.output_frame = "nowhere";
+  EXPECT_EQ(ask(request).code.value, ReturnCode::TF_UNKNOWN_FRAME);
+  request.output_frame = "island";
+  EXPECT_EQ(ask(request).code.value, ReturnCode::TF_DISCONNECTED);
+  // A transform that was sent once, five seconds ago, says nothing about now.
+  tf2_ros::TransformBroadcaster broadcaster;
+  const auto old = stamped("base_link", "conveyor", Pose::Identity(), ros::Time::now() - ros::Duration(5));
+  request.output_frame = "conveyor";
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(PATIENCE);
+  std::int16_t code = 0;
+  do  // until the node's listener has heard of the frame
+  {
+    broadcaster.sendTransform(old);
+    code = ask(request).code.value;
+  } while (code == ReturnCode::TF_UNKNOWN_FRAME && ros::WallTime::now() < end);
+  EXPECT_EQ(code, ReturnCode::TF_EXTRAPOLATION);
+  expectGoodAnswer();
+}
+
+TEST_F(DetectorNodeTest, RefusesRequestsThatMakeNoSense)
+{
+  camera_->start(makeMessage(scene_->grid));
+  GetBestGrasp::Request request;
+  request.part_ids = {"step_blok"};
+  const auto unknown = ask(request);
+  EXPECT_EQ(unknown.code.value, ReturnCode::PART_UNKNOWN);
+  EXPECT_NE(unknown.code.message.find("step_block"), std::string::npos) << unknown.code.message;
+  request = GetBestGrasp::Request();
+  request.acquisition = 7;
+  EXPECT_EQ(ask(request).code.value, ReturnCode::INVALID_ARGUMENT);
+  request = GetBestGrasp::Request();
+  request.deadline = ros::Duration(-1);
+  EXPECT_EQ(ask(request).code.value, ReturnCode::INVALID_ARGUMENT);
+  request = GetBestGrasp::Request();
+  request.part_ids = {"step_block"};
+  EXPECT_EQ(ask(request).code.value, ReturnCode::OK);
+}
+
+TEST_F(DetectorNodeTest, OldCloudsAndPassedDeadlines)
+{
+  expectGoodAnswer();  // the camera stands still from here on
+  GetBestGrasp::Request request;
+  request.acquisition = GetBestGrasp::Request::USE_LATEST;
+  request.max_age = ros::Duration(1e-6);
+  EXPECT_EQ(ask(request).code.value, ReturnCode::STALE_CLOUD);
+  request.max_age = ros::Duration(PATIENCE);
+  EXPECT_EQ(ask(request).code.value, ReturnCode::OK);
+  request.deadline = ros::Duration(1e-4);
+  EXPECT_EQ(ask(request).code.value, ReturnCode::DEADLINE);
+  request = GetBestGrasp::Request();
+  request.deadline = ros::Duration(0.05);  // a new cloud never comes
+  EXPECT_EQ(ask(request).code.value, ReturnCode::NO_CLOUD);
+  expectGoodAnswer();
+}
+
+struct CloudCase
+{
+  const char* name;
+  std::function<PointCloud2(const bin_picking::DepthGrid&)> make;
+  std::int16_t expected;
+};
+
+class CloudCaseTest : public DetectorNodeTest, public testing::WithParamInterface<CloudCase>
+{
+};
+
+TEST_P(CloudCaseTest, IsAnsweredWithItsCode)
+{
+  camera_->start(GetParam().make(scene_->grid));
+  const auto response = ask();
+  camera_->stop();
+  EXPECT_EQ(response.code.value, GetParam().expected) << response.code.name << ": " << response.code.message;
+  EXPECT_FALSE(response.code.message.empty());
+  if (GetParam().expected < 0)
+  {
+    EXPECT_TRUE(response.detections.empty());
+    EXPECT_FALSE(response.code.hint.empty());
+    const auto latched = receive<bin_picking_perception::DetectionArray>("/cell/detector/detections");
+    ASSERT_TRUE(latched);
+    EXPECT_EQ(latched->code.value, GetParam().expected) << "an old result is still latched";
+  }
+  expectGoodAnswer();
+}
+
+PointCloud2 without(const bin_picking::DepthGrid& grid, const char* field)
+{
+  Layout layout;
+  layout.order.erase(std::find(layout.order.begin(), layout.order.end(), field));
+  return makeMessage(grid, layout);
+}
+
+const float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
+
+const std::vector<CloudCase> CLOUD_CASES = {
+    {"Empty", [](const auto&) { auto m = PointCloud2(); m.header.frame_id = "camera"; return m; }, ReturnCode::BAD_CLOUD},
+    {"Unorganized",
+     [](const auto& grid) {
+       auto m = makeMessage(grid);
+       m.width *= m.height;
+       m.height = 1;
+       m.row_step = m.width * m.point_step;
+       return m;
+     },
+     ReturnCode::BAD_CLOUD},
+    {"AllNan", [](const auto& grid) { return makeMessage(test_clouds::mapped(grid, [](float) { return NOT_A_NUMBER; })); },
+     ReturnCode::BAD_CLOUD},
+    {"AllZero", [](const auto& grid) { return makeMessage(test_clouds::mapped(grid, [](float) { return 0.0f; })); },
+     ReturnCode::BAD_CLOUD},
+    {"WithoutX", [](const auto& grid) { return without(grid, "x"); }, ReturnCode::BAD_CLOUD},
+    {"WithoutY", [](const auto& grid) { return without(grid, "y"); }, ReturnCode::BAD_CLOUD},
+    {"WithoutZ", [](const auto& grid) { return without(grid, "z"); }, ReturnCode::BAD_CLOUD},
+    {"Truncated", [](const auto& grid) { auto m = makeMessage(grid); m.data.resize(m.data.size() / 2); return m; },
+     ReturnCode::BAD_CLOUD},
+    {"Millimetres", [](const auto& grid) { return makeMessage(test_clouds::mapped(grid, [](float v) { return 1000 * v; })); },
+     ReturnCode::UNIT_SUSPECT},
+    {"WithoutFrame", [](const auto& grid) { auto m = makeMessage(grid); m.header.frame_id.clear(); return m; },
+     ReturnCode::BAD_CLOUD},
+    {"UnknownFrame", [](const auto& grid) { auto m = makeMessage(grid); m.header.frame_id = "moon"; return m; },
+     ReturnCode::TF_UNKNOWN_FRAME},
+    {"EmptyBin",
+     [](auto grid) {
+       for (int i = 0; i < static_cast<int>(grid.size()); ++i)
+         if (grid.z[static_cast<std::size_t>(i)] < 0.5999f)
+           grid.invalidate(i);
+       return makeMessage(grid);
+     },
+     ReturnCode::BIN_EMPTY},
+    {"Float64", [](const auto& grid) { Layout l; l.float64 = true; return makeMessage(grid, l); }, ReturnCode::OK},
+    {"BigEndian", [](const auto& grid) { Layout l; l.big_endian = true; return makeMessage(grid, l); }, ReturnCode::OK},
+    {"PaddedAndShuffled",
+     [](const auto& grid) { Layout l; l.order = {"z", "y", "x"}; l.lead = 4; l.row_padding = 12; return makeMessage(grid, l); },
+     ReturnCode::OK},
+    {"ZeroWhereNotMeasured",
+     [](const auto& grid) {
+       return makeMessage(test_clouds::mapped(grid, [](float v) { return std::isnan(v) ? 0.0f : v; }));
+     },
+     ReturnCode::OK},
+};
+
+INSTANTIATE_TEST_SUITE_P(Clouds, CloudCaseTest, testing::ValuesIn(CLOUD_CASES),
+                         [](const auto& cloud_case) { return std::string(cloud_case.param.name); });
+
+TEST_F(DetectorNodeTest, TuningChangesTheNextAnswer)
+{
+  const auto set = [](double tilt) {
+    dynamic_reconfigure::Reconfigure call;
+    call.request.config.doubles.emplace_back();
+    call.request.config.doubles.back().name = "grasp_max_tilt";
+    call.request.config.doubles.back().value = tilt;
+    return ros::service::call("/cell/detector/tuning/set_parameters", call);
+  };
+  ASSERT_TRUE(ros::service::waitForService("/cell/detector/tuning/set_parameters", ros::Duration(PATIENCE)));
+  ASSERT_TRUE(set(0.0));
+  camera_->start(makeMessage(scene_->grid));
+  const auto refused = ask();
+  camera_->stop();
+  // The estimated pose is never level to the last bit.
+  EXPECT_EQ(refused.code.value, ReturnCode::NO_PICKABLE) << refused.code.message;
+  EXPECT_TRUE(std::any_of(refused.rejected.begin(), refused.rejected.end(),
+                          [](const auto& reason) { return reason.kind == "grasp"; }));
+  ASSERT_TRUE(set(0.785));
+  expectGoodAnswer();
+}
+
+TEST_F(DetectorNodeTest, ContinuousProcessingAndEndWhileACallWaits)
+{
+  ros::NodeHandle nh("second");
+  ros::NodeHandle private_nh("second/detector");
+  setParameters(private_nh);
+  private_nh.setParam("process", "continuous");
+  auto second = std::make_unique<DetectorNode>(nh, private_nh);
+  test_clouds::VirtualCamera camera(nh, "points");
+  camera.start(makeMessage(scene_->grid));
+  boost::shared_ptr<const bin_picking_perception::DetectionArray> detections;
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(PATIENCE);
+  do  // NOT_READY first
+    detections = receive<bin_picking_perception::DetectionArray>("/second/detector/detections");
+  while (detections && detections->code.value == ReturnCode::NOT_READY && ros::WallTime::now() < end);
+  camera.stop();
+  ASSERT_TRUE(detections);
+  ASSERT_EQ(detections->code.value, ReturnCode::OK) << detections->code.message;
+  expectTruth(fromMessage(detections->detections[0].pose));
+
+  ros::ServiceClient client = private_nh.serviceClient<GetBestGrasp>("get_best_grasp");
+  auto call = std::async(std::launch::async, [&client] {
+    GetBestGrasp waiting;  // for a cloud that never comes
+    client.call(waiting);
+    return waiting.response.code.value;
+  });
+  second.reset();
+  ASSERT_EQ(call.wait_for(std::chrono::seconds(10)), std::future_status::ready) << "the end of the node hangs behind a call";
+}
+
+TEST_F(DetectorNodeTest, WrongParametersAreRefusedAtTheStart)
+{
+  ros::NodeHandle nh("third");
+  ros::NodeHandle private_nh("third/detector");
+  EXPECT_THROW(DetectorNode(nh, private_nh), bin_picking::Error);  // no parameters at all
+  setParameters(private_nh);
+  private_nh.setParam("bin", "/no/such/file.yaml");
+  EXPECT_THROW(DetectorNode(nh, private_nh), bin_picking::Error);
+  private_nh.deleteParam("bin");
+  private_nh.setParam("max_agee", 2);
+  EXPECT_THROW(DetectorNode(nh, private_nh), bin_picking::Error);
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "detector_node_test");
+  ros::NodeHandle nh;
+  ros::AsyncSpinner spinner(2);
+  spinner.start();
+  return RUN_ALL_TESTS();
+}
