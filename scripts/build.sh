@@ -26,6 +26,7 @@ command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -
 cmake -S . -B "$build_dir" -DCMAKE_BUILD_TYPE=Release -DBIN_PICKING_WERROR=$werror "${launcher[@]}" "$@"
 targets=(all)
 # catkin keeps the ROS tests out of "all".
-cmake --build "$build_dir" --target help | grep -qx '\.\.\. tests' && targets+=(tests)
+known=$(cmake --build "$build_dir" --target help)
+if grep -qx '\.\.\. tests' <<<"$known"; then targets+=(tests); fi
 echo "build: $jobs at once"
 cmake --build "$build_dir" -j "$jobs" --target "${targets[@]}"
