@@ -20,7 +20,7 @@ struct VerificationParameters
   double noise_tolerance = 5.5;
   double max_normal_angle = 0.7;
   double min_outline_share = 0.35;
-  double min_score = 0.5;
+  double min_score = 0.435;
   double min_visible_fraction = 0.35;
   double min_inlier_share = 0.6;
   double max_violation_share = 0.2;
@@ -58,7 +58,14 @@ const ViewTemplate& nearestView(const TrainedModel& model, const Pose& T_camera_
 /// Every step-th surface point of the nearest view so that about max_points remain.
 OrientedPoints facingPoints(const TrainedModel& model, const Pose& T_camera_object, std::size_t max_points);
 
-/// \param facing points of the part that face the camera (facingPoints)
+/// Surface points that the camera would see at this pose if nothing but the part were there: a z-buffer of the points
+/// themselves. Exact also where the trained views are too far apart (into a bore, along a tube); slower than facingPoints.
+OrientedPoints visiblePoints(const TrainedModel& model, const Pose& T_camera_object);
+
+/// Every step-th point so that at most max_points remain.
+OrientedPoints thinned(const OrientedPoints& points, std::size_t max_points);
+
+/// \param facing points of the part that face the camera (visiblePoints, facingPoints)
 /// \param tolerance of the distance to the surface, metres
 /// \param grid what belongs to parts; \param surroundings the same grid with the bin and its floor, which are no evidence for
 ///   a part but may contradict it
@@ -73,12 +80,12 @@ struct OutlineEvidence
   int continues = 0;  ///< the surface goes on: the part is not there, or it touches a neighbour of equal height
   int hidden = 0;     ///< something nearer, or no data: speaks neither for nor against
 
-  /// 1 where the outline says nothing: a single part on the cropped floor of a bin has no data around it, and is right.
-  double share() const { return ends + continues > 0 ? static_cast<double>(ends) / (ends + continues) : 1; }
+  /// Drawn to 2/3, as if three points had been seen, so that an outline in shadow all around decides nothing.
+  double share() const { return (ends + 2.0) / (ends + continues + 3.0); }
 };
 
 /// A pose on the middle of a larger surface explains all its points; only the outline tells that it is wrong.
-/// \param visible all points of the nearest view; their spacing must be well below `step`
+/// \param visible all points that the camera sees (visiblePoints); their spacing must be well below `step`
 /// \param step how far outside of the outline the scene is looked at, metres
 /// \param tolerance depth difference that is still "going on", metres
 OutlineEvidence gatherOutlineEvidence(const OrientedPoints& visible, const Pose& T_camera_object, const DepthGrid& grid,

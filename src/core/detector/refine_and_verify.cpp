@@ -13,6 +13,7 @@ namespace
 {
 constexpr std::size_t COARSE_POINTS = 250;
 constexpr std::size_t FINE_POINTS = 1500;
+constexpr double OUTLINE_NOISE = 3;  // standard deviations that are no step in depth
 
 double score(const PoseEvidence& evidence, double outline_share, const VerificationParameters& parameters)
 {
@@ -73,14 +74,6 @@ IcpResult refine(const Hypothetical& pose, const PreparedScene& scene, const Tra
   return unchanged;
 }
 
-OutlineEvidence outline(const Pose& T_camera_object, const PreparedScene& scene, const TrainedModel& model)
-{
-  constexpr double NOISE_TOLERANCE = 3;  // standard deviations
-  const double leaf = model.parameters.leaf;
-  return gatherOutlineEvidence(facingPoints(model, T_camera_object, model.surface.size()), T_camera_object, scene.surroundings,
-                               leaf,                                leaf + NOISE_TOLERANCE * scene.noise);
-}
-
 void judge(Detection& detection, const PoseEvidence& evidence, const OutlineEvidence& outline,
            const VerificationParameters& parameters)
 {
@@ -110,18 +103,21 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
   detection.part = model.name;
   detection.T_camera_object = refined.T_camera_object;
   detection.votes = pose.votes;
-  const PoseEvidence evidence = gatherEvidence(facingPoints(model, refined.T_camera_object, FINE_POINTS), refined.T_camera_object,
-                                         scene.grid, scene.surroundings, scene.normals, tolerance(scene, model, verification),
-                                         verification);
+  const OrientedPoints visible = visiblePoints(model, refined.T_camera_object);
+  const PoseEvidence evidence =
+      gatherEvidence(thinned(visible, FINE_POINTS), refined.T_camera_object, scene.grid, scene.surroundings, scene.normals,
+                     tolerance(scene, model, verification), verification);
+  const double leaf = model.parameters.leaf;
+  const OutlineEvidence outline = gatherOutlineEvidence(visible, refined.T_camera_object, scene.surroundings, leaf,
+                                                        leaf + OUTLINE_NOISE * scene.noise);
   detection.visible_fraction = evidence.visibleFraction();
   detection.rms = evidence.rms;
   detection.matching_rate = pose.region->is_candidate ?
                                 matchingRate(model.surface, refined.T_camera_object, pose.region->samples.points,
                                              verification.match_distance) :
                                 evidence.matchingRate();
-  const OutlineEvidence ends = outline(refined.T_camera_object, scene, model);
-  detection.score = verification.enabled ? score(evidence, ends.share(), verification) : detection.matching_rate;
-  judge(detection, evidence, ends, verification);
+  detection.score = verification.enabled ? score(evidence, outline.share(), verification) : detection.matching_rate;
+  judge(detection, evidence, outline, verification);
   assessed.cells = coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell);
   return assessed;
 }

@@ -131,6 +131,11 @@ std::vector<std::int8_t> classify(TrainedModel& model)
   TrainingParameters& p = model.parameters;
   model.classes = p.high_curvature_min > 0 ? CurvatureClasses{p.low_curvature_max, p.high_curvature_min}
                                            : classesFromHistogram(model.points.curvature);
+  if (model.classes.low_max >= 0)
+  {
+    p.low_curvature_max = model.classes.low_max;
+    p.high_curvature_min = model.classes.high_min;
+  }
   std::vector<std::int8_t> classes(model.points.size(), 0);
   if (p.feature == FeatureKind::CurPpf)
     for (std::size_t i = 0; i < classes.size(); ++i)
@@ -179,8 +184,10 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
     visibility.clear();
   report("feature table");
   const std::vector<std::int8_t> classes = classify(*model);
-  model->table = FeatureTable(model->points, classes, visibility, static_cast<int>(words), makeQuantizer(*model),
-                              p.min_pair_distance, executor);
+  const FeatureQuantizer quantizer = makeQuantizer(*model);
+  model->parameters.d_cur = quantizer.curvature_step;
+  model->table =
+      FeatureTable(model->points, classes, visibility, static_cast<int>(words), quantizer, p.min_pair_distance, executor);
   return model;
 }
 }  // namespace bin_picking

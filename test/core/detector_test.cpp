@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_picking_perception/detector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/evaluation/pose_error.hpp"
+#include "tee_scene.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+constexpr double SIGMA = 0.0001;
+
+Detector detector(DetectorParameters parameters = {}) { return Detector({test::teeModel()}, std::move(parameters)); }
+
+/// Index of the detection that is the instance at `truth`; -1 if none.
+int indexOf(const std::vector<Detection>& detections, const Pose& truth)
+{
+  for (std::size_t i = 0; i < detections.size(); ++i)
+  {
+    const PoseError error = poseError(detections[i].T_camera_object, truth, test::teeModel()->symmetry, test::teeModel()->center);
+    if (error.translation < 0.001 && error.rotation < 0.02)
+      return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::string nearestError(const std::vector<Detection>& detections, const Pose& truth)
+{
+  PoseError best{1e9, 0};
+  for (const auto& d : detections)
+  {
+    const PoseError error = poseError(d.T_camera_object, truth, test::teeModel()->symmetry, test::teeModel()->center);
+    if (error.translation < best.translation)
+      best = error;
+  }
+  return "the nearest is off by " + std::to_string(1e3 * best.translation) + " mm and " + std::to_string(best.rotation) + " rad";
+}
+
+TEST(Detector, findsEveryFreePartAndNothingElse)
+{
+  for (const std::uint32_t seed : {1u, 2u, 3u})
+  {
+    const auto truth = test::posesApart(4, seed);
+    Detector::Request request;
+    request.bin = test::wideBin();
+    const DetectionResult result = detector().detect(test::renderTees(truth, SIGMA), request);
+    EXPECT_EQ(result.code, DetectionCode::Ok) << result.message;
+    EXPECT_EQ(result.detections.size(), truth.size()) << "seed " << seed;
+    for (const auto& T : truth)
+      EXPECT_GE(indexOf(result.detections, T), 0) << "seed " << seed << " " << nearestError(result.detections, T);
+    for (std::size_t i = 0; i < result.detections.size(); ++i)
+    {
+      const Detection& d = result.detections[i];
+      EXPECT_NEAR((d.T_camera_object.linear() * d.T_camera_object.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0, 1e-9);
+      EXPECT_NEAR(d.T_camera_object.linear().determinant(), 1, 1e-9);
+      EXPECT_TRUE(d.rejection.empty());
+      for (const auto& criterion : d.criteria)
+        EXPECT_TRUE(criterion.passed()) << criterion.name;
+      EXPECT_GT(d.matching_rate, 0.95);
+      if (i > 0)
+      {
+        EXPECT_LE(d.score, result.detections[i - 1].score);
+      }
+    }
+    for (const auto& rejected : result.rejected)
+      EXPECT_FALSE(rejected.rejection.empty());
+  }
+}
+
+TEST(Detector, sameBitsForAnyNumberOfThreadsAndTwoRuns)
+{
+  const DepthGrid grid = test::renderTees(test::posesApart(4, 5), SIGMA);
+  DetectorParameters one;
+  one.num_threads = 1;
+  DetectorParameters two;
+  two.num_threads = 2;
+  const auto a = detector(one).detect(grid, {});
+  for (const auto& b : {detector(two).detect(grid, {}), detector(two).detect(grid, {})})
+  {
+    ASSERT_EQ(a.detections.size(), b.detections.size());
+    ASSERT_EQ(a.rejected.size(), b.rejected.size());
+    for (std::size_t i = 0; i < a.detections.size(); ++i)
+    {
+      EXPECT_TRUE(a.detections[i].T_camera_object.matrix() == b.detections[i].T_camera_object.matrix());
+      EXPECT_EQ(a.detections[i].score, b.detections[i].score);
+      EXPECT_EQ(a.detections[i].matching_rate, b.detections[i].matching_rate);
+    }
+  }
+}
+
+TEST(Detector, paperPresetFindsItsCandidateTargets)
+{
+  // Upright tees, as segmentation by Algorithm 1 wants them: whole and apart.
+  const auto truth = test::posesApart(4, 3);
+  Detector::Request request;
+  request.bin = test::wideBin();
+  request.keep_segmentation = true;
+  const DetectionResult result = detector(DetectorParameters::preset("paper")).detect(test::renderTees(truth, SIGMA), request);
+  ASSERT_GE(result.detections.size(), 2u) << result.message;
+  const auto right = std::count_if(truth.begin(), truth.end(), [&](const Pose& T) { return indexOf(result.detections, T) >= 0; });
+  EXPECT_GE(right, 2);
+  EXPECT_TRUE(std::any_of(truth.begin(), truth.end(), [&](const Pose& T) { return indexOf(result.detections, T) == 0; }))
+      << "the best-ranked detection is not right";
+  ASSERT_TRUE(result.segmentation);
+  EXPECT_GT(*std::max_element(result.segmentation->labels.begin(), result.segmentation->labels.end()), 1);
+  EXPECT_EQ(result.segmentation->gray.size(), result.segmentation->labels.size());
+}
+
+TEST(Detector, everyFeatureFindsTheParts)
+{
+  const auto truth = test::posesApart(3, 7);
+  const DepthGrid grid = test::renderTees(truth, SIGMA);
+  for (const FeatureKind feature : {FeatureKind::Ppf, FeatureKind::CurPpfUnweighted})
+  {
+    TrainingParameters training;
+    training.feature = feature;
+    const auto model = trainPart(test::teeDefinition(), training, Executor(2));
+    const auto result = Detector({model}, {}).detect(grid, {});
+    for (const auto& T : truth)
+      EXPECT_GE(indexOf(result.detections, T), 0) << nearestError(result.detections, T);
+  }
+}
+
+TEST(Detector, emptyBinIsAnOrdinaryResultThatSaysSo)
+{
+  Detector::Request request;
+  request.bin = test::wideBin();
+  const DetectionResult result = detector().detect(test::renderTees({}, SIGMA), request);
+  EXPECT_EQ(result.code, DetectionCode::BinEmpty);
+  EXPECT_TRUE(result.detections.empty());
+  EXPECT_NE(result.message.find("empty"), std::string::npos);
+}
+
+TEST(Detector, otherThingsAreNoMatchWithReasons)
+{
+  DepthRenderer renderer(480, 384, test::smallCamera());
+  renderer.draw(test::floorMesh(), Pose::Identity(), 0);
+  const OrientedPoints ball = test::sphere(0.05, 60000);
+  Pose T = Pose::Identity();
+  T.translation().z() = 0.6;
+  renderer.draw(ball, T, 0.002, 1);
+  const DetectionResult result = detector().detect(renderer.grid(), {});
+  EXPECT_EQ(result.code, DetectionCode::NoMatch);
+  EXPECT_TRUE(result.detections.empty());
+  EXPECT_FALSE(result.message.empty());
+}
+
+TEST(Detector, unknownPartNamesTheNearOne)
+{
+  Detector::Request request;
+  request.parts = {"three_way_tub"};
+  try
+  {
+    detector().detect(test::renderTees({}, SIGMA), request);
+    FAIL() << "no error";
+  }
+  catch (const ParameterError& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("did you mean 'three_way_tube'"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Detector, passedDeadlineIsPartial)
+{
+  Detector::Request request;
+  request.deadline = 1e-9;
+  const DetectionResult result = detector().detect(test::renderTees(test::posesApart(2, 1), SIGMA), request);
+  EXPECT_TRUE(result.partial);
+  EXPECT_TRUE(result.detections.empty());
+  EXPECT_NE(result.message.find("deadline"), std::string::npos);
+}
+
+TEST(Detector, refusesNoModelsAndParametersOutOfRange)
+{
+  EXPECT_THROW(Detector({}, {}), ParameterError);
+  DetectorParameters parameters;
+  parameters.voting.weight = 0;
+  EXPECT_THROW(detector(parameters), ParameterError);
+  EXPECT_THROW(DetectorParameters::preset("fats"), ParameterError);
+}
+
+TEST(Detector, everyPresetLiesWithinItsRanges)
+{
+  for (const char* name : {"paper", "fast", "accurate"})
+    EXPECT_NO_THROW(detector(DetectorParameters::preset(name))) << name;
+}
+
+TEST(Match, findsThePartInAWholeScan)
+{
+  std::mt19937 random(3);
+  const Pose truth = test::randomPose(random, 0.3);
+  const OrientedPoints scan = transformed(sampleSurface(test::teeModel()->mesh, 0.001, 77), truth);
+  const DetectionResult result = detector(DetectorParameters::preset("paper")).match(scan, true);
+  ASSERT_FALSE(result.detections.empty());
+  EXPECT_EQ(indexOf({result.detections.front()}, truth), 0);
+  EXPECT_GT(result.detections.front().matching_rate, 0.999);
+  EXPECT_THROW(detector().match({}, true), CloudError);
+}
+}  // namespace
+}  // namespace bin_picking

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_picking_perception/refinement/verification.hpp"
+
+#include <gtest/gtest.h>
+
+#include "bin_picking_perception/refinement/icp.hpp"
+#include "bin_picking_perception/scene/preprocessing.hpp"
+#include "tee_scene.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+struct Scene
+{
+  DepthGrid surroundings;
+  DepthGrid grid;
+  std::vector<Eigen::Vector3f> normals;
+};
+
+Scene sceneOf(const std::vector<Pose>& poses, double sigma)
+{
+  Scene scene;
+  scene.surroundings = test::renderTees(poses, sigma);
+  scene.grid = scene.surroundings;
+  for (std::size_t i = 0; i < scene.grid.size(); ++i)
+    if (scene.grid.z[i] > 0.655f)
+      scene.grid.invalidate(static_cast<int>(i));
+  scene.normals = estimateGridNormals(scene.grid, test::teeModel()->parameters.normal_radius, Executor(1));
+  return scene;
+}
+
+PoseEvidence evidenceOf(const Scene& scene, const Pose& T)
+{
+  return gatherEvidence(facingPoints(*test::teeModel(), T, 2000), T, scene.grid, scene.surroundings, scene.normals, 0.0015, {});
+}
+
+OutlineEvidence outlineOf(const Scene& scene, const Pose& T)
+{
+  const double leaf = test::teeModel()->parameters.leaf;
+  return gatherOutlineEvidence(facingPoints(*test::teeModel(), T, 100000), T, scene.surroundings, leaf, leaf);
+}
+
+TEST(Evidence, truePoseIsExplained)
+{
+  const auto poses = test::posesApart(1, 4);
+  const Scene scene = sceneOf(poses, 0.0001);
+  const PoseEvidence evidence = evidenceOf(scene, poses[0]);
+  EXPECT_GT(evidence.inlierShare(0.3), 0.93);  // what is lost lies at edges, where pixels and normals mix
+  EXPECT_GT(evidence.visibleFraction(), 0.9);
+  EXPECT_LT(evidence.violationShare(), 0.03);
+  EXPECT_GT(evidence.matchingRate(), 0.98);
+  EXPECT_LT(evidence.rms, 0.0004);
+  EXPECT_GT(outlineOf(scene, poses[0]).share(), 0.9);
+}
+
+TEST(Evidence, poseInFreeSpaceIsViolated)
+{
+  const auto poses = test::posesApart(1, 4);
+  const Scene scene = sceneOf(poses, 0.0001);
+  Pose beside = poses[0];
+  beside.translation().x() += 0.15;  // over the bare floor
+  const PoseEvidence evidence = evidenceOf(scene, beside);
+  EXPECT_GT(evidence.violationShare(), 0.95);
+  EXPECT_EQ(evidence.matchingRate(), 0);
+  Pose nearer = poses[0];
+  nearer.translation().z() -= 0.05;  // floats above the part
+  EXPECT_GT(evidenceOf(scene, nearer).violationShare(), 0.9);
+}
+
+TEST(Evidence, hiddenPoseIsNeitherRightNorWrong)
+{
+  const auto poses = test::posesApart(1, 4);
+  const Scene scene = sceneOf(poses, 0.0001);
+  Pose behind = poses[0];
+  behind.translation().z() += 0.3;  // under the floor
+  const PoseEvidence evidence = evidenceOf(scene, behind);
+  EXPECT_GT(evidence.occluded, 0.95 * evidence.facing);
+  EXPECT_EQ(evidence.violated, 0);
+  EXPECT_EQ(evidence.visibleFraction(), 0);
+}
+
+TEST(Evidence, unmeasuredIsCountedApart)
+{
+  const auto poses = test::posesApart(1, 4);
+  Scene scene = sceneOf(poses, 0.0001);
+  for (std::size_t i = 0; i < scene.grid.size(); ++i)
+  {
+    scene.grid.invalidate(static_cast<int>(i));
+    scene.surroundings.invalidate(static_cast<int>(i));
+  }
+  const PoseEvidence evidence = evidenceOf(scene, poses[0]);
+  EXPECT_EQ(evidence.unmeasured, evidence.facing);
+  EXPECT_EQ(evidence.inlierShare(0.3), 0);
+}
+
+TEST(Outline, goesOnWhereTheSurfaceIsLarger)
+{
+  // A tee laid onto a wide plane at the height of its nearest points explains nothing there; its outline tells.
+  DepthGrid flat = makeGrid(480, 384, test::smallCamera());
+  for (int v = 0; v < flat.height; ++v)
+    for (int u = 0; u < flat.width; ++u)
+    {
+      const Eigen::Vector3f p = flat.camera.backProject(u, v, 0.6).cast<float>();
+      const auto i = static_cast<std::size_t>(flat.index(u, v));
+      flat.x[i] = p.x();
+      flat.y[i] = p.y();
+      flat.z[i] = p.z();
+    }
+  OrientedPoints plate = test::plane(0.06, 4000);
+  Pose T = Pose::Identity();
+  T.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  T.translation().z() = 0.6;
+  const OutlineEvidence evidence = gatherOutlineEvidence(plate, T, flat, 0.004, 0.004);
+  EXPECT_EQ(evidence.ends, 0);
+  EXPECT_GT(evidence.continues, 30);
+  EXPECT_LT(evidence.share(), 0.1);
+}
+
+TEST(Outline, withoutDataItDecidesNothing)
+{
+  const DepthGrid nothing = makeGrid(480, 384, test::smallCamera());
+  Pose T = Pose::Identity();
+  T.translation().z() = 0.6;
+  const OutlineEvidence evidence = gatherOutlineEvidence(test::plane(0.06, 4000), T, nothing, 0.004, 0.004);
+  EXPECT_EQ(evidence.ends + evidence.continues, 0);
+  EXPECT_NEAR(evidence.share(), 2.0 / 3, 1e-9);
+}
+
+TEST(CoveredCells, doNotDependOnTheReduction)
+{
+  const int width = 100;
+  std::vector<int> fine;
+  for (int v = 20; v < 60; ++v)
+    for (int u = 30; u < 70; ++u)
+      fine.push_back(v * width + u);
+  std::vector<int> coarse;
+  for (int v = 10; v < 30; ++v)
+    for (int u = 15; u < 35; ++u)
+      coarse.push_back(v * width / 2 + u);
+  EXPECT_EQ(coveredCells(fine, width, 1, 5), coveredCells(coarse, width / 2, 2, 5));
+  EXPECT_EQ(coveredCells(fine, width, 1, 5).size(), 64u);
+}
+
+TEST(IcpProjective, removesASmallErrorAndStaysRigid)
+{
+  const auto poses = test::posesApart(4, 9);
+  const Scene scene = sceneOf(poses, 0.0001);
+  std::mt19937 random(2);
+  for (const auto& truth : poses)
+  {
+    Pose start = truth;
+    start.linear() = truth.linear() * Eigen::AngleAxisd(0.06, test::unitVector(random)).toRotationMatrix();
+    start.translation() += 0.002 * test::unitVector(random);
+    const IcpResult result = icpProjective(facingPoints(*test::teeModel(), start, 800), scene.grid, scene.normals, start,
+                                           test::teeModel()->parameters.leaf, {});
+    // sigma 0.1 mm on some 2000 pixels: the statistical error is below 0.01 mm; edges and quantisation leave more.
+    EXPECT_LT((result.T_camera_object * test::teeModel()->center - truth * test::teeModel()->center).norm(), 0.0003);
+    EXPECT_LT(test::rotationError(result.T_camera_object, truth), 0.008);
+    EXPECT_NEAR(result.T_camera_object.linear().determinant(), 1, 1e-12);
+    EXPECT_GT(result.correspondences, 200);
+  }
+}
+
+TEST(IcpProjective, doesNotSlideAlongACylinder)
+{
+  // Only the side of a long cylinder is in the picture: nothing holds it along its axis.
+  DepthRenderer renderer(480, 384, test::smallCamera());
+  const OrientedPoints tube = test::cylinder(0.02, 1.0, 400000);
+  Pose T = Pose::Identity();
+  T.linear() = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  T.translation().z() = 0.6;
+  renderer.draw(tube, T, 0.001, 1);
+  const DepthGrid grid = renderer.grid();
+  const auto normals = estimateGridNormals(grid, 0.005, Executor(1));
+  const OrientedPoints model = test::cylinder(0.02, 0.1, 4000);
+  Pose start = T;
+  start.translation() += Eigen::Vector3d(0.003, 0.0015, 0.001);
+  const IcpResult result = icpProjective(model, grid, normals, start, 0.004, {});
+  const Eigen::Vector3d moved = result.T_camera_object.translation() - T.translation();
+  EXPECT_NEAR(moved.x(), 0.003, 0.0005) << "slid along the axis";
+  EXPECT_NEAR(moved.y(), 0, 0.0002);
+  EXPECT_NEAR(moved.z(), 0, 0.0005);
+}
+
+TEST(IcpProjective, withoutDataThePoseStaysAndRmsIsNan)
+{
+  const DepthGrid nothing = makeGrid(480, 384, test::smallCamera());
+  const std::vector<Eigen::Vector3f> normals(nothing.size(), Eigen::Vector3f::Constant(NAN));
+  const auto start = test::posesApart(1, 1)[0];
+  const IcpResult result = icpProjective(facingPoints(*test::teeModel(), start, 500), nothing, normals, start, 0.004, {});
+  EXPECT_TRUE(std::isnan(result.rms));
+  EXPECT_FALSE(result.converged);
+  EXPECT_TRUE(result.T_camera_object.matrix() == start.matrix());
+}
+}  // namespace
+}  // namespace bin_picking
