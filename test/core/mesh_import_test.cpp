@@ -71,7 +71,7 @@ TEST(MeshImport, namesTheUnitThatWouldFit)
 {
   const TemporaryFolder folder;
   const std::string millimetres = folder.write("mm.stl", test::binaryStl(test::box(SIDE, SIDE, SIDE), ""));
-  expectWords(loadingError(millimetres, LengthUnit::Metre), {"mm.stl", "6.928e+04 mm", "2000 mm", "'mm' (69.28 mm)"});
+  expectWords(loadingError(millimetres, LengthUnit::Metre), {"mm.stl", "69.28 m", "2 m", "'mm' (69.28 mm)"});
   const std::string metres = folder.write("m.stl", test::binaryStl(test::box(0.04f, 0.04f, 0.04f), ""));
   expectWords(loadingError(metres), {"'m' (69.28 mm)"});
   const std::string hopeless = folder.write("km.stl", test::binaryStl(test::box(1e6f, 1e6f, 1e6f), ""));

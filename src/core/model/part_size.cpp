@@ -25,12 +25,15 @@ constexpr std::array<LengthUnit, 4> ALL_UNITS = {LengthUnit::Metre, LengthUnit::
 
 bool fitsABin(double diameter) { return diameter >= MIN_PART_DIAMETER && diameter <= MAX_PART_DIAMETER; }
 
-std::string inMillimetres(double metres)
+std::string lengthText(double metres)
 {
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text.precision(4);
-  text << metres * 1e3 << " mm";
+  if (metres < 1)
+    text << metres * 1e3 << " mm";
+  else
+    text << metres << " m";
   return text.str();
 }
 
@@ -63,7 +66,7 @@ std::string unitAdvice(double diameter, LengthUnit unit)
   {
     const double other = diameter / metresPer(unit) * metresPer(candidate);
     if (candidate != unit && fitsABin(other))
-      fitting += (fitting.empty() ? "'" : " or '") + toString(candidate) + "' (" + inMillimetres(other) + ")";
+      fitting += (fitting.empty() ? "'" : " or '") + toString(candidate) + "' (" + lengthText(other) + ")";
   }
   return fitting.empty() ? "no unit makes it fit: check that this is the right file, and scale it in the CAD program"
                          : "set the unit to " + fitting;
@@ -87,9 +90,9 @@ void checkPartShape(const std::vector<Eigen::Vector3f>& points, const std::strin
                     std::to_string(broken - points.begin() + 1) + "); export it from the CAD program again");
   const double diameter = largestDistance(points);
   if (!fitsABin(diameter))
-    throw FileError("'" + path + "' read in '" + toString(unit) + "' has a diameter of " + inMillimetres(diameter) +
-                    ", but parts between " + inMillimetres(MIN_PART_DIAMETER) + " and " +
-                    inMillimetres(MAX_PART_DIAMETER) + " are supported; " + unitAdvice(diameter, unit));
+    throw FileError("'" + path + "' read in '" + toString(unit) + "' has a diameter of " + lengthText(diameter) +
+                    ", but parts between " + lengthText(MIN_PART_DIAMETER) + " and " + lengthText(MAX_PART_DIAMETER) +
+                    " are supported; " + unitAdvice(diameter, unit));
   if (thickness(points) < FLAT_SHARE * diameter)
     throw FileError("'" + path + "' is flat: all its points lie in one plane, but a part needs a volume; export the " +
                     "solid and not a drawing of it");
