@@ -67,7 +67,7 @@ std::shared_ptr<const TrainedModel> loadOrTrain(const PartDefinition& definition
   {
     try
     {
-      const std::shared_ptr<const TrainedModel> model = loadModel(path);
+      std::shared_ptr<const TrainedModel> model = loadModel(path);
       reason = reasonToTrain(*model, definition, parameters);
       if (reason.empty())
         return model;
@@ -77,7 +77,7 @@ std::shared_ptr<const TrainedModel> loadOrTrain(const PartDefinition& definition
       reason = std::string("cannot be used: ") + error.what();
     }
   }
-  const std::shared_ptr<const TrainedModel> model = trainPart(definition, parameters, executor);
+  std::shared_ptr<const TrainedModel> model = trainPart(definition, parameters, executor);
   note = "The part '" + definition.name + "' was trained because the model file '" + path + "' " + reason + ".";
   try
   {

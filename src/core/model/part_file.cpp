@@ -36,7 +36,7 @@ void readMesh(const YamlMap& yaml, PartDefinition& part)
 
 Eigen::Vector3d readExpectedSize(const YamlMap& yaml)
 {
-  const Eigen::Vector3d size = yaml.vector("expected_size", "m");
+  Eigen::Vector3d size = yaml.vector("expected_size", "m");
   if (!(size.minCoeff() > 0))
     yaml.fail("expected_size", "'expected_size' must be positive in each direction, metres");
   return size;
@@ -45,7 +45,7 @@ Eigen::Vector3d readExpectedSize(const YamlMap& yaml)
 /// Reports mistyped training parameters now, at their line, and not only when the part is trained.
 std::string readTraining(const YamlMap& yaml, const std::string& path)
 {
-  const std::string text = yaml.yaml("training");
+  std::string text = yaml.yaml("training");
   TrainingParameters parameters;
   try
   {

@@ -32,7 +32,7 @@ struct ViewCamera
   double pixel = 0;                                  ///< metres at the center
   PinholeCamera intrinsics;
 
-  Pose T_camera_object(const Eigen::Vector3d& direction) const
+  Pose poseOfObject(const Eigen::Vector3d& direction) const
   {
     Eigen::Matrix3d R;
     R.row(2) = -direction;
@@ -115,7 +115,7 @@ void measureSilhouette(const DepthRenderer& image, ViewTemplate& view)
 ViewTemplate renderView(const TriangleMesh& mesh, const OrientedPoints& surface, const ViewCamera& camera,
                         const Eigen::Vector3d& direction)
 {
-  const Pose T_camera_object = camera.T_camera_object(direction);
+  const Pose T_camera_object = camera.poseOfObject(direction);
   DepthRenderer image(camera.side, camera.side, camera.intrinsics);
   if (mesh.empty())
     image.draw(surface, T_camera_object, DISC_RADIUS_PIXELS * camera.pixel, 0);
