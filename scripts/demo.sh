@@ -71,6 +71,10 @@ trap stop EXIT
 roslaunch -p "$port" bin_picking_perception demo.launch scene:="$scene" parts:="$part" rviz:="${rviz:-false}" \
   >"$out/roslaunch.log" 2>&1 &
 children+=($!)
+for _ in $(seq 120); do  # until the master listens
+  if (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; then break; fi
+  sleep 0.5
+done
 
 failed=0
 /usr/bin/python3 scripts/demo_report.py "$scene" "$part" --frame camera || failed=1
@@ -87,8 +91,10 @@ if [ -n "$screenshot" ]; then
   sleep 2
   rviz -d config/rviz/bin_picking.rviz --no-stereo >"$out/rviz.log" 2>&1 &
   children+=($!)
-  # Nothing tells that rviz has drawn everything; a software renderer takes its time with a large cloud.
-  sleep "${RVIZ_SECONDS:-40}"
+  # Nothing tells that rviz has subscribed and drawn everything; a software renderer takes its time with a large cloud.
+  sleep 15
+  pick_client.py >"$out/pick_client.log"  # pictures of the segmentation are only made while somebody looks
+  sleep 25
   import -window root "$screenshot"
   echo "demo: $screenshot"
 fi
