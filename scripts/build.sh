@@ -2,12 +2,13 @@
 # Builds everything, tests included: Release, warnings are errors, no workspace needed.
 # Usage: scripts/build.sh [--lenient] [CMAKE_OPTION...]      e.g. scripts/build.sh -DBIN_PICKING_WITH_ROS=OFF
 #   --lenient        warnings are not errors (for other compilers than GCC 12)
-#   BUILD_DIR=DIR    build folder (default: build)
+#   BUILD_DIR=DIR    build folder (default: build-release)
 #   JOBS=N           compilers at once (default: by processors and free memory)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-build_dir=${BUILD_DIR:-build}
+# Not "build": rosrun leaves out what lies in a folder of that name inside the package.
+build_dir=${BUILD_DIR:-build-release}
 werror=ON
 case "${1:-}" in
   -h|--help) sed -n '2,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"; exit 0 ;;

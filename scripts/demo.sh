@@ -6,7 +6,7 @@
 #   --seed N                 another bin (default: 1)
 #   --headless               no rviz, even with a display
 #   --rviz-screenshot FILE   renders rviz on a virtual display into a PNG
-#   BUILD_DIR=DIR            build folder (default: build); the demo's files go to BUILD_DIR/demo
+#   BUILD_DIR=DIR            build folder (default: build-release); the demo's files go to BUILD_DIR/demo
 # Exit code 1 if the part of the best grasp is off by more than 5 mm or 5 degrees.
 set -euo pipefail
 start_dir=$PWD
@@ -32,7 +32,7 @@ while [ $# -gt 0 ]; do
   esac
 done
 
-build_dir=${BUILD_DIR:-build}
+build_dir=${BUILD_DIR:-build-release}
 case "$build_dir" in /*) ;; *) build_dir=$source_dir/$build_dir ;; esac
 scripts/setup.sh
 scripts/build.sh

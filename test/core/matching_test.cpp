@@ -104,7 +104,9 @@ TEST(Voting, unknownCurvatureMeetsEveryBin)
   const TrainedModel plain = test::modelOf(test::lBlock(0.0015, 1), LEAF, FeatureKind::Ppf);
   const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
   const std::vector<std::uint8_t> unknown(scene.size(), 0);
-  const auto wild = voteForPoses(model, scene, unknown, {3, 33, 66}, {}, Deadline(), Executor(1));
+  VotingParameters voting;
+  voting.curvature_wildcard = true;
+  const auto wild = voteForPoses(model, scene, unknown, {3, 33, 66}, voting, Deadline(), Executor(1));
   const auto four_dimensional = voteForPoses(plain, scene, {}, {3, 33, 66}, {}, Deadline(), Executor(1));
   EXPECT_EQ(wild.statistics.votes, four_dimensional.statistics.votes);
 }

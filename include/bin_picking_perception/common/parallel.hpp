@@ -13,7 +13,7 @@ namespace bin_picking
 class Executor
 {
 public:
-  /// \param num_threads at least 1; 0 means all processors.
+  /// \param num_threads at most so many, and no more than there are processors; 0 means all processors.
   explicit Executor(int num_threads = 1);
   ~Executor();
   Executor(Executor&&) noexcept;

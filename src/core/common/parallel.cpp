@@ -17,8 +17,17 @@ struct Executor::Arena
   tbb::task_arena arena;
 };
 
-Executor::Executor(int num_threads)
-  : num_threads_(num_threads > 0 ? num_threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency())))
+namespace
+{
+/// More threads than processors only wait for each other.
+int boundedThreads(int wanted)
+{
+  const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return wanted > 0 ? std::min(wanted, processors) : processors;
+}
+}  // namespace
+
+Executor::Executor(int num_threads) : num_threads_(boundedThreads(num_threads))
 {
   if (num_threads_ > 1)
     arena_ = std::make_unique<Arena>(num_threads_);
