@@ -12,8 +12,8 @@
 
 namespace bin_picking_ros
 {
-/// The newest cloud, as the shared pointer it came as. Storing is all that the subscriber's callback does, so that neither a
-/// long detection nor a waiting service call holds up the driver.
+/// The newest cloud, as the shared pointer it came as. Storing is all that the subscriber's callback does, so that
+/// neither a long detection nor a waiting service call holds up the driver.
 class CloudBuffer
 {
 public:
@@ -30,7 +30,8 @@ public:
   /// Waits for a cloud stamped at or after `earliest`; nullptr once `until` has passed or the buffer is closed.
   sensor_msgs::PointCloud2ConstPtr waitForStamp(const ros::Time& earliest, Clock::time_point until) const;
 
-  /// Waits for any cloud but the `num_seen` first; nullptr once the buffer is closed. \param num_seen is brought up to date
+  /// Waits for any cloud but the `num_seen` first; nullptr once the buffer is closed. \param num_seen is brought up to
+  /// date
   sensor_msgs::PointCloud2ConstPtr waitForNext(std::uint64_t& num_seen) const;
 
   /// Ends all waiting, now and in future.

@@ -58,12 +58,13 @@ void checkSizes(const PointCloud2& message)
 {
   const std::uint64_t row_bytes = std::uint64_t{message.width} * message.point_step;
   if (message.row_step < row_bytes)
-    badLayout("row_step is " + std::to_string(message.row_step) + ", but " + std::to_string(message.width) + " points of " +
-              std::to_string(message.point_step) + " bytes need " + std::to_string(row_bytes) + ".");
+    badLayout("row_step is " + std::to_string(message.row_step) + ", but " + std::to_string(message.width) +
+              " points of " + std::to_string(message.point_step) + " bytes need " + std::to_string(row_bytes) + ".");
   const std::uint64_t needed = std::uint64_t{message.row_step} * (message.height - 1) + row_bytes;
   if (message.data.size() < needed)
     badLayout("it is truncated: " + std::to_string(message.width) + " x " + std::to_string(message.height) +
-              " points need " + std::to_string(needed) + " bytes, " + std::to_string(message.data.size()) + " are there.");
+              " points need " + std::to_string(needed) + " bytes, " + std::to_string(message.data.size()) +
+              " are there.");
 }
 
 bool hostIsBigEndian()
@@ -90,8 +91,8 @@ public:
       size_[i] = scalarSize(field);
       offset_[i] = field.offset;
       if (std::uint64_t{field.offset} + size_[i] > message.point_step)
-        badLayout("field " + field.name + " at offset " + std::to_string(field.offset) + " does not fit into a point of " +
-                  std::to_string(message.point_step) + " bytes.");
+        badLayout("field " + field.name + " at offset " + std::to_string(field.offset) +
+                  " does not fit into a point of " + std::to_string(message.point_step) + " bytes.");
     }
     checkSizes(message);
     swap_ = (message.is_bigendian != 0) != hostIsBigEndian();

@@ -10,18 +10,19 @@
 
 namespace bin_picking_ros
 {
-/// Reads x, y, z of any layout that the message can describe: fields in any order and at any offset, float32 or float64, either
-/// byte order, padded points and rows. Width and height are kept, is_dense of the message is not believed.
-/// \throws bin_picking::CloudError Empty (no points), BadLayout (x, y or z missing or not a floating-point number, sizes that
+/// Reads x, y, z of any layout that the message can describe: fields in any order and at any offset, float32 or
+/// float64, either byte order, padded points and rows. Width and height are kept, is_dense of the message is not
+/// believed. \throws bin_picking::CloudError Empty (no points), BadLayout (x, y or z missing or not a floating-point
+/// number, sizes that
 ///   contradict each other, fewer bytes than announced)
 pcl::PointCloud<pcl::PointXYZ> toPclCloud(const sensor_msgs::PointCloud2& message);
 
 /// What a cheap look at a cloud tells.
 struct CloudSummary
 {
-  std::size_t sampled = 0;   ///< points looked at
-  std::size_t valid = 0;     ///< of them: finite and not (0, 0, 0)
-  double median_depth = 0;   ///< of the valid ones, in the unit of the cloud; NaN if there are none
+  std::size_t sampled = 0;  ///< points looked at
+  std::size_t valid = 0;    ///< of them: finite and not (0, 0, 0)
+  double median_depth = 0;  ///< of the valid ones, in the unit of the cloud; NaN if there are none
 
   double validShare() const { return sampled > 0 ? static_cast<double>(valid) / static_cast<double>(sampled) : 0.0; }
 };

@@ -98,7 +98,8 @@ CloudPlayer::CloudPlayer(ros::NodeHandle nh, ros::NodeHandle private_nh) : files
   publisher_ = nh.advertise<sensor_msgs::PointCloud2>("points", 1);
   trigger_ = private_nh.advertiseService("trigger", &CloudPlayer::trigger, this);
   if (parameters.rate > 0)
-    timer_ = nh.createWallTimer(ros::WallDuration(1.0 / parameters.rate), [this](const ros::WallTimerEvent&) { publishNext(); });
+    timer_ = nh.createWallTimer(ros::WallDuration(1.0 / parameters.rate),
+                                [this](const ros::WallTimerEvent&) { publishNext(); });
   loader_ = std::thread([this] { loadAll(); });
 }
 

@@ -18,12 +18,13 @@ namespace bin_picking_ros
 /// \throws bin_picking::FileError if a path or pattern names no file
 std::vector<std::string> expandFiles(const std::vector<std::string>& patterns);
 
-/// Publishes PCD files on `points` as a camera would: periodically, or when ~trigger is called. Clouds are stamped when they
-/// are published.
+/// Publishes PCD files on `points` as a camera would: periodically, or when ~trigger is called. Clouds are stamped when
+/// they are published.
 class CloudPlayer
 {
 public:
-  /// Returns at once; files are read in the background. \throws bin_picking::Error for wrong parameters or missing files
+  /// Returns at once; files are read in the background. \throws bin_picking::Error for wrong parameters or missing
+  /// files
   CloudPlayer(ros::NodeHandle nh, ros::NodeHandle private_nh);
   ~CloudPlayer();
   CloudPlayer(const CloudPlayer&) = delete;

@@ -48,7 +48,8 @@ void checkRequest(const bin_picking_perception::GetBestGrasp::Request& request)
     throw RequestError(ReturnCode::INVALID_ARGUMENT, "The acquisition is " + std::to_string(request.acquisition) +
                                                          "; it must be WAIT_NEW (0) or USE_LATEST (1).");
   if (request.max_age < ros::Duration(0) || request.deadline < ros::Duration(0))
-    throw RequestError(ReturnCode::INVALID_ARGUMENT, "max_age and deadline must not be negative; 0 means the parameter.");
+    throw RequestError(ReturnCode::INVALID_ARGUMENT,
+                       "max_age and deadline must not be negative; 0 means the parameter.");
 }
 
 std::string secondsText(double seconds)
@@ -73,17 +74,17 @@ struct DetectorNode::Job
 };
 
 DetectorNode::DetectorNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
-  : parameters_(readNodeParameters(private_nh)),
-    gripper_(bin_picking::loadGripper(resolveResource(parameters_.gripper))),
-    bin_(loadOptionalBin(parameters_.bin)),
-    parts_(loadParts(parameters_.parts)),
-    nh_(nh),
-    frames_(nh),
-    publisher_(private_nh, parameters_.tf_prefix),
-    tuned_(parameters_)
+    : parameters_(readNodeParameters(private_nh)),
+      gripper_(bin_picking::loadGripper(resolveResource(parameters_.gripper))),
+      bin_(loadOptionalBin(parameters_.bin)),
+      parts_(loadParts(parameters_.parts)),
+      nh_(nh),
+      frames_(nh),
+      publisher_(private_nh, parameters_.tf_prefix),
+      tuned_(parameters_)
 {
-  const std::string cache = parameters_.model_cache.empty() ? rosHome() + "/bin_picking_models" :
-                                                              resolveResource(parameters_.model_cache);
+  const std::string cache =
+      parameters_.model_cache.empty() ? rosHome() + "/bin_picking_models" : resolveResource(parameters_.model_cache);
   loader_ = std::make_unique<ModelLoader>(
       ModelLoader::Job{parts_, parameters_.training, cache, parameters_.detector.num_threads},
       [this](const ModelLoader::Models& models) { setModels(models); });
@@ -137,8 +138,8 @@ void DetectorNode::retune(const NodeParameters& parameters)
 
 void DetectorNode::rebuildPipeline()
 {
-  pipeline_ = std::make_shared<PickPipeline>(
-      PickPipeline::Setup{models_, parts_, gripper_, tuned_.detector, tuned_.grasping});
+  pipeline_ =
+      std::make_shared<PickPipeline>(PickPipeline::Setup{models_, parts_, gripper_, tuned_.detector, tuned_.grasping});
 }
 
 std::shared_ptr<const PickPipeline> DetectorNode::readyPipeline() const
@@ -147,7 +148,8 @@ std::shared_ptr<const PickPipeline> DetectorNode::readyPipeline() const
   if (pipeline_)
     return pipeline_;
   const ModelLoader::Status loader = loader_->status();
-  throw RequestError(loader.state == ModelLoader::State::Failed ? ReturnCode::INTERNAL : ReturnCode::NOT_READY, loader.text);
+  throw RequestError(loader.state == ModelLoader::State::Failed ? ReturnCode::INTERNAL : ReturnCode::NOT_READY,
+                     loader.text);
 }
 
 bool DetectorNode::handleRequest(Request& request, Response& response)
@@ -184,7 +186,8 @@ DetectorNode::Response DetectorNode::answer(const Request& request, Job& job)
 PointCloud2ConstPtr DetectorNode::waitForNew(const Job& job) const
 {
   const double limit = job.deadline > 0 ? std::min(job.deadline, parameters_.cloud_timeout) : parameters_.cloud_timeout;
-  const auto until = job.start + std::chrono::duration_cast<CloudBuffer::Clock::duration>(std::chrono::duration<double>(limit));
+  const auto until =
+      job.start + std::chrono::duration_cast<CloudBuffer::Clock::duration>(std::chrono::duration<double>(limit));
   if (PointCloud2ConstPtr cloud = clouds_.waitForStamp(job.called, until))
     return cloud;
   if (clouds_.closed())
@@ -193,9 +196,9 @@ PointCloud2ConstPtr DetectorNode::waitForNew(const Job& job) const
   if (!latest)
     throw RequestError(ReturnCode::NO_CLOUD, "No cloud has come on " + cloud_subscriber_.getTopic() + " yet; " +
                                                  secondsText(limit) + " were waited.");
-  throw RequestError(ReturnCode::NO_CLOUD, "No cloud exposed after the call came within " + secondsText(limit) +
-                                               "; the newest is stamped " +
-                                               secondsText((job.called - latest->header.stamp).toSec()) + " before the call.");
+  throw RequestError(ReturnCode::NO_CLOUD,
+                     "No cloud exposed after the call came within " + secondsText(limit) + "; the newest is stamped " +
+                         secondsText((job.called - latest->header.stamp).toSec()) + " before the call.");
 }
 
 PointCloud2ConstPtr DetectorNode::takeLatest(const Request& request, const Job& job) const
@@ -234,7 +237,8 @@ std::optional<bin_picking::Bin> DetectorNode::binAt(const std_msgs::Header& clou
   return bin;
 }
 
-PickResult DetectorNode::process(const PickPipeline& pipeline, PickRequest pick, const OutputFrame& output, const Job& job)
+PickResult DetectorNode::process(const PickPipeline& pipeline, PickRequest pick, const OutputFrame& output,
+                                 const Job& job)
 {
   pick.bin = binAt(job.cloud->header);
   pick.keep_segmentation = publisher_.wantsSegmentation();
@@ -242,7 +246,8 @@ PickResult DetectorNode::process(const PickPipeline& pipeline, PickRequest pick,
   {
     pick.deadline = job.deadline - job.elapsed();
     if (pick.deadline <= 0)
-      throw RequestError(ReturnCode::DEADLINE, "The deadline of " + secondsText(job.deadline) + " passed before the cloud was used.");
+      throw RequestError(ReturnCode::DEADLINE,
+                         "The deadline of " + secondsText(job.deadline) + " passed before the cloud was used.");
   }
   PickResult result = pipeline.run(*job.cloud, pick);
   publisher_.publish(result, output);

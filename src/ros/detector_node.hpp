@@ -24,9 +24,9 @@
 
 namespace bin_picking_ros
 {
-/// The detector as a ROS node: clouds in, service answers, topics and tf out. The constructor returns at once; models are
-/// loaded in the background. Threads: the caller's queue takes clouds, timers and reconfiguration and never waits; the
-/// service has a queue and a thread of its own; so has continuous processing.
+/// The detector as a ROS node: clouds in, service answers, topics and tf out. The constructor returns at once; models
+/// are loaded in the background. Threads: the caller's queue takes clouds, timers and reconfiguration and never waits;
+/// the service has a queue and a thread of its own; so has continuous processing.
 class DetectorNode
 {
 public:

@@ -15,7 +15,8 @@ namespace bin_picking_ros
 {
 namespace
 {
-std::string describe(const std::string& target, const std::string& source, const ros::Time& stamp, const std::string& why)
+std::string describe(const std::string& target, const std::string& source, const ros::Time& stamp,
+                     const std::string& why)
 {
   std::ostringstream text;
   text << "No transform from " << source << " to " << target << " at the cloud's time " << stamp << ": " << why;
@@ -48,7 +49,8 @@ bin_picking::Pose FrameLookup::lookup(const std::string& target, const std::stri
   }
 }
 
-bin_picking::Pose FrameLookup::lookupNow(const std::string& target, const std::string& source, const ros::Time& stamp) const
+bin_picking::Pose FrameLookup::lookupNow(const std::string& target, const std::string& source,
+                                         const ros::Time& stamp) const
 {
   try
   {

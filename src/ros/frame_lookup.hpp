@@ -19,9 +19,10 @@ class FrameLookup
 public:
   explicit FrameLookup(const ros::NodeHandle& nh);
 
-  /// T_target_source at `stamp`. Waits up to `timeout` seconds of wall time for the transform to come; equal frames need none.
-  /// \throws RequestError TF_UNKNOWN_FRAME, TF_EXTRAPOLATION, TF_DISCONNECTED
-  bin_picking::Pose lookup(const std::string& target, const std::string& source, const ros::Time& stamp, double timeout) const;
+  /// T_target_source at `stamp`. Waits up to `timeout` seconds of wall time for the transform to come; equal frames
+  /// need none. \throws RequestError TF_UNKNOWN_FRAME, TF_EXTRAPOLATION, TF_DISCONNECTED
+  bin_picking::Pose lookup(const std::string& target, const std::string& source, const ros::Time& stamp,
+                           double timeout) const;
 
   /// Ends all waiting, now and in future.
   void close() { closed_ = true; }

@@ -75,24 +75,14 @@ Marker binMarker(const bin_picking::Bin& bin, const OutputFrame& output)
   return marker;
 }
 
-Marker labelMarker(std::size_t rank, const bin_picking::Detection& detection, const OutputFrame& output)
-{
-  Marker marker = makeMarker(output.header, "labels", rank, Marker::TEXT_VIEW_FACING);
-  marker.pose = toPoseMessage(output.T_output_camera * detection.T_camera_object);
-  marker.scale.z = 0.015;
-  marker.color = toColor({1.0f, 1.0f, 1.0f}, 1.0f);
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%zu: %.2f", rank, detection.score);
-  marker.text = text.data();
-  return marker;
-}
 }  // namespace
 
 TriangleMesh simplifyForDisplay(const TriangleMesh& mesh, std::size_t max_triangles)
 {
   if (mesh.triangles.size() <= max_triangles)
     return mesh;
-  // With n cells along its diagonal, the surface of a compact part passes through about 2 n^2 cells, two triangles each.
+  // With n cells along its diagonal, the surface of a compact part passes through about 2 n^2 cells, two triangles
+  // each.
   const double cells = std::sqrt(static_cast<double>(max_triangles) / 4.0);
   const float cell = static_cast<float>(bin_picking::boundingBoxDiagonal(mesh.vertices) / cells);
   TriangleMesh result;
@@ -101,7 +91,8 @@ TriangleMesh simplifyForDisplay(const TriangleMesh& mesh, std::size_t max_triang
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
   {
     const Eigen::Vector3f& v = mesh.vertices[i];
-    const std::array<std::int64_t, 3> key = {std::llround(v.x() / cell), std::llround(v.y() / cell), std::llround(v.z() / cell)};
+    const std::array<std::int64_t, 3> key = {std::llround(v.x() / cell), std::llround(v.y() / cell),
+                                             std::llround(v.z() / cell)};
     const auto [entry, is_new] = cluster_of_cell.emplace(key, static_cast<std::uint32_t>(result.vertices.size()));
     if (is_new)
       result.vertices.push_back(v);
@@ -116,8 +107,9 @@ TriangleMesh simplifyForDisplay(const TriangleMesh& mesh, std::size_t max_triang
   return result;
 }
 
-MarkerMaker::MarkerMaker(std::vector<std::shared_ptr<const bin_picking::TrainedModel>> models, bin_picking::Gripper gripper)
-  : models_(std::move(models)), gripper_(std::move(gripper))
+MarkerMaker::MarkerMaker(std::vector<std::shared_ptr<const bin_picking::TrainedModel>> models,
+                         bin_picking::Gripper gripper)
+    : models_(std::move(models)), gripper_(std::move(gripper))
 {
   for (const auto& model : models_)
     meshes_.push_back(simplifyForDisplay(model->mesh, MAX_DISPLAY_TRIANGLES));
@@ -137,6 +129,23 @@ Marker MarkerMaker::partMarker(const bin_picking::Detection& detection, const Ou
     for (const Eigen::Vector3f& point : models_[detection.model_index]->points.points)
       marker.points.push_back(toPoint(point.cast<double>()));
   }
+  return marker;
+}
+
+Marker MarkerMaker::labelMarker(std::size_t rank, const bin_picking::Detection& detection,
+                                const OutputFrame& output) const
+{
+  // In front of the part as the camera sees it: at its origin the text would be inside.
+  const Eigen::Vector3d center = detection.T_camera_object * models_.at(detection.model_index)->center;
+  Pose T_camera_label = Pose::Identity();
+  T_camera_label.translation() = center - 0.5 * models_[detection.model_index]->diameter * center.normalized();
+  Marker marker = makeMarker(output.header, "labels", rank, Marker::TEXT_VIEW_FACING);
+  marker.pose = toPoseMessage(output.T_output_camera * T_camera_label);
+  marker.scale.z = 0.012;
+  marker.color = toColor({1.0f, 1.0f, 1.0f}, 1.0f);
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%zu: %.2f", rank, detection.score);
+  marker.text = text.data();
   return marker;
 }
 

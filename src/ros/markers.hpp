@@ -12,8 +12,8 @@
 
 namespace bin_picking_ros
 {
-/// A mesh with at most about `max_triangles` triangles for display: vertices that share a cell of a grid become one. A small
-/// mesh is returned as it is.
+/// A mesh with at most about `max_triangles` triangles for display: vertices that share a cell of a grid become one. A
+/// small mesh is returned as it is.
 bin_picking::TriangleMesh simplifyForDisplay(const bin_picking::TriangleMesh& mesh, std::size_t max_triangles);
 
 /// Pictures of results for rviz. Namespaces: parts (coloured by rank), labels, rejected (gray), bin, grasp, gripper.
@@ -27,8 +27,12 @@ public:
 
 private:
   visualization_msgs::Marker partMarker(const bin_picking::Detection& detection, const OutputFrame& output) const;
-  void addDetections(const PickResult& result, const OutputFrame& output, visualization_msgs::MarkerArray& markers) const;
-  void addGrasp(const bin_picking::Grasp& grasp, const OutputFrame& output, visualization_msgs::MarkerArray& markers) const;
+  visualization_msgs::Marker labelMarker(std::size_t rank, const bin_picking::Detection& detection,
+                                         const OutputFrame& output) const;
+  void addDetections(const PickResult& result, const OutputFrame& output,
+                     visualization_msgs::MarkerArray& markers) const;
+  void addGrasp(const bin_picking::Grasp& grasp, const OutputFrame& output,
+                visualization_msgs::MarkerArray& markers) const;
 
   std::vector<std::shared_ptr<const bin_picking::TrainedModel>> models_;
   std::vector<bin_picking::TriangleMesh> meshes_;

@@ -75,7 +75,8 @@ void ModelLoader::run(const Job& job, const OnLoaded& on_loaded)
     if (models.size() != job.parts.size())  // stopped
       return;
     on_loaded(models);
-    report(State::Ready, std::to_string(models.size()) + (models.size() == 1 ? " model is" : " models are") + " loaded.");
+    report(State::Ready,
+           std::to_string(models.size()) + (models.size() == 1 ? " model is" : " models are") + " loaded.");
   }
   catch (...)
   {

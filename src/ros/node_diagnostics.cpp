@@ -15,17 +15,17 @@ namespace
 using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 
-constexpr double MIN_VALID_SHARE = 0.2;     // less is unusual even for shiny parts in a deep bin
-constexpr std::size_t SUMMARY_STRIDE = 8;   // 36 000 of 2.3 million points: far below a millisecond
+constexpr double MIN_VALID_SHARE = 0.2;    // less is unusual even for shiny parts in a deep bin
+constexpr std::size_t SUMMARY_STRIDE = 8;  // 36 000 of 2.3 million points: far below a millisecond
 }  // namespace
 
 NodeDiagnostics::NodeDiagnostics(ros::NodeHandle nh, const ros::NodeHandle& private_nh, const CloudBuffer& clouds,
                                  const ModelLoader& loader, double max_depth)
-  : clouds_(clouds),
-    loader_(loader),
-    max_depth_(max_depth),
-    time_before_(ros::WallTime::now()),
-    updater_(nh, private_nh, private_nh.getNamespace())
+    : clouds_(clouds),
+      loader_(loader),
+      max_depth_(max_depth),
+      time_before_(ros::WallTime::now()),
+      updater_(nh, private_nh, private_nh.getNamespace())
 {
   updater_.setHardwareID(nh.resolveName("points"));
   updater_.add("models", [this](DiagnosticStatusWrapper& status) { describeModels(status); });
@@ -34,7 +34,8 @@ NodeDiagnostics::NodeDiagnostics(ros::NodeHandle nh, const ros::NodeHandle& priv
   timer_ = nh.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_.force_update(); });
 }
 
-void NodeDiagnostics::note(const ReturnCode& code, const std::vector<bin_picking::StageTime>& timing, double total_seconds)
+void NodeDiagnostics::note(const ReturnCode& code, const std::vector<bin_picking::StageTime>& timing,
+                           double total_seconds)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   last_ = Outcome{code, timing, total_seconds};

@@ -22,8 +22,8 @@ class NodeDiagnostics
 {
 public:
   /// The arguments must outlive it. \param max_depth median depth above which a cloud looks like millimetres, metres
-  NodeDiagnostics(ros::NodeHandle nh, const ros::NodeHandle& private_nh, const CloudBuffer& clouds, const ModelLoader& loader,
-                  double max_depth);
+  NodeDiagnostics(ros::NodeHandle nh, const ros::NodeHandle& private_nh, const CloudBuffer& clouds,
+                  const ModelLoader& loader, double max_depth);
 
   /// Notes the outcome of a request. Thread-safe.
   void note(const ReturnCode& code, const std::vector<bin_picking::StageTime>& timing, double total_seconds);

@@ -42,7 +42,8 @@ std::string scalarText(XmlRpcValue& value, const std::string& path)
     case XmlRpcValue::TypeString:
       return static_cast<std::string&>(value);
     default:
-      throw ParameterError("The parameter " + path + " is a list or binary data; a number, true, false or a text is wanted.");
+      throw ParameterError("The parameter " + path +
+                           " is a list or binary data; a number, true, false or a text is wanted.");
   }
 }
 
@@ -55,18 +56,21 @@ std::vector<std::string> readParts(XmlRpcValue& value)
     for (int i = 0; i < value.size(); ++i)
     {
       if (value[i].getType() != XmlRpcValue::TypeString)
-        throw ParameterError("Entry " + std::to_string(i) + " of the parameter parts is not a text; part directories are wanted.");
+        throw ParameterError("Entry " + std::to_string(i) +
+                             " of the parameter parts is not a text; part directories are wanted.");
       parts.push_back(static_cast<std::string&>(value[i]));
     }
   else
-    throw ParameterError("The parameter parts is neither a text nor a list; it must name the directories of the parts.");
+    throw ParameterError(
+        "The parameter parts is neither a text nor a list; it must name the directories of the parts.");
   return parts;
 }
 
 void checkTogether(const NodeParameters& parameters)
 {
   if (parameters.parts.empty())
-    throw ParameterError("The parameter parts is missing or empty; it must name at least one directory with a part.yaml.");
+    throw ParameterError(
+        "The parameter parts is missing or empty; it must name at least one directory with a part.yaml.");
   if (parameters.bin.empty() && !parameters.bin_frame.empty())
     throw ParameterError("The parameter bin_frame is " + parameters.bin_frame +
                          ", but bin is empty; the bin's size is read from the file that bin names.");
@@ -77,14 +81,15 @@ void NodeParameters::visit(bin_picking::ParameterVisitor& v)
 {
   v.field({"preset", "", "speed against completeness; the values below `detector` change it in detail"}, preset,
           std::vector<std::string>{"paper", "fast", "accurate"});
-  v.field({"model_cache", "", "directory where trained models are kept; empty: bin_picking_models in the ROS home"}, model_cache,
-          std::vector<std::string>{});
+  v.field({"model_cache", "", "directory where trained models are kept; empty: bin_picking_models in the ROS home"},
+          model_cache, std::vector<std::string>{});
   v.field({"bin", "", "YAML file with pose and size of the bin; empty: parts are searched everywhere"}, bin,
           std::vector<std::string>{});
-  v.field({"bin_frame", "", "tf frame of the bin (middle of the inner floor, z up); replaces the pose in the file"}, bin_frame,
-          std::vector<std::string>{});
+  v.field({"bin_frame", "", "tf frame of the bin (middle of the inner floor, z up); replaces the pose in the file"},
+          bin_frame, std::vector<std::string>{});
   v.field({"gripper", "", "YAML file with the gripper's opening and boxes"}, gripper, std::vector<std::string>{});
-  v.field({"output_frame", "", "frame of all results; empty: the frame of the cloud"}, output_frame, std::vector<std::string>{});
+  v.field({"output_frame", "", "frame of all results; empty: the frame of the cloud"}, output_frame,
+          std::vector<std::string>{});
   v.field({"tf_prefix", "", "put before the names of the published tf frames; keeps two detectors apart"}, tf_prefix,
           std::vector<std::string>{});
   v.field({"tf_timeout", "s", "how long a transform at the cloud's time is waited for", 0, 60}, tf_timeout);
@@ -141,7 +146,8 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_nh)
 {
   XmlRpcValue tree;
   if (!ros::param::get(private_nh.getNamespace(), tree) || tree.getType() != XmlRpcValue::TypeStruct)
-    throw ParameterError("There are no parameters below " + private_nh.getNamespace() + "; at least parts must be set.");
+    throw ParameterError("There are no parameters below " + private_nh.getNamespace() +
+                         "; at least parts must be set.");
   return parseNodeParameters(tree);
 }
 }  // namespace bin_picking_ros

@@ -13,8 +13,9 @@ namespace
 {
 void print(const char* name, const geometry_msgs::Pose& pose)
 {
-  std::printf("  %-9s position [%.4f, %.4f, %.4f] orientation [%.4f, %.4f, %.4f, %.4f]\n", name, pose.position.x, pose.position.y,
-              pose.position.z, pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w);
+  std::printf("  %-9s position [%.4f, %.4f, %.4f] orientation [%.4f, %.4f, %.4f, %.4f]\n", name, pose.position.x,
+              pose.position.y, pose.position.z, pose.orientation.x, pose.orientation.y, pose.orientation.z,
+              pose.orientation.w);
 }
 }  // namespace
 

@@ -29,12 +29,12 @@ auto timed(const std::string& stage, std::vector<bin_picking::StageTime>& timing
 
 ReturnCode judge(const DetectionResult& detection, const GraspSelection& selection)
 {
-  const std::string grasps = std::to_string(selection.grasps.size()) + " grasps allowed, " +
-                             std::to_string(selection.rejected.size()) + " rejected.";
+  const std::string grasps = "; " + std::to_string(selection.grasps.size()) + " grasps allowed, " +
+                             std::to_string(selection.rejected.size()) + " rejected";
   if (!selection.grasps.empty())
-    return makeReturnCode(detection.partial ? ReturnCode::PARTIAL : ReturnCode::OK, detection.message + " " + grasps);
+    return makeReturnCode(detection.partial ? ReturnCode::PARTIAL : ReturnCode::OK, detection.message + grasps);
   if (detection.partial)
-    return makeReturnCode(ReturnCode::DEADLINE, "The deadline passed before a grasp was ready. " + detection.message);
+    return makeReturnCode(ReturnCode::DEADLINE, "The deadline passed before a grasp was ready: " + detection.message);
   switch (detection.code)
   {
     case DetectionCode::BinEmpty:
@@ -44,7 +44,7 @@ ReturnCode judge(const DetectionResult& detection, const GraspSelection& selecti
     case DetectionCode::Ok:
       break;
   }
-  return makeReturnCode(ReturnCode::NO_PICKABLE, detection.message + " " + grasps);
+  return makeReturnCode(ReturnCode::NO_PICKABLE, detection.message + grasps);
 }
 }  // namespace
 
@@ -89,8 +89,7 @@ PickResult PickPipeline::run(const sensor_msgs::PointCloud2& cloud, const PickRe
   timing.insert(timing.end(), result.detection.timing.begin(), result.detection.timing.end());
   bin_picking::GraspParameters grasping = setup_.grasping;
   if (request.max_grasps > 0)
-    grasping.max_grasps = static_cast<int>(
-        std::min(request.max_grasps, static_cast<std::size_t>(grasping.max_grasps)));
+    grasping.max_grasps = static_cast<int>(std::min(request.max_grasps, static_cast<std::size_t>(grasping.max_grasps)));
   result.selection = timed("grasp selection", timing, [&] {
     return bin_picking::selectGrasps(result.detection.detections, setup_.parts, setup_.gripper,
                                      request.bin ? &*request.bin : nullptr, grasping);

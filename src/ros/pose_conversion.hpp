@@ -13,8 +13,8 @@ namespace bin_picking_ros
 geometry_msgs::Pose toPoseMessage(const bin_picking::Pose& pose);
 geometry_msgs::Transform toTransformMessage(const bin_picking::Pose& pose);
 
-/// The quaternion is normalised. \throws RequestError(INVALID_ARGUMENT) if a number is not finite or the quaternion is not of
-/// unit length (within 1e-3): an all-zero one is what a forgotten orientation looks like
+/// The quaternion is normalised. \throws RequestError(INVALID_ARGUMENT) if a number is not finite or the quaternion is
+/// not of unit length (within 1e-3): an all-zero one is what a forgotten orientation looks like
 bin_picking::Pose fromMessage(const geometry_msgs::Pose& message);
 bin_picking::Pose fromMessage(const geometry_msgs::Transform& message);
 }  // namespace bin_picking_ros

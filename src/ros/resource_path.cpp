@@ -12,7 +12,10 @@ namespace bin_picking_ros
 {
 namespace
 {
-bool startsWith(const std::string& text, const std::string& prefix) { return text.compare(0, prefix.size(), prefix) == 0; }
+bool startsWith(const std::string& text, const std::string& prefix)
+{
+  return text.compare(0, prefix.size(), prefix) == 0;
+}
 }  // namespace
 
 std::string resolveResource(const std::string& resource)

@@ -7,7 +7,8 @@
 namespace bin_picking_ros
 {
 /// The file that a parameter names: package://PACKAGE/PATH, file:///PATH or an absolute path.
-/// \throws bin_picking::ParameterError unknown package, or a relative path: a node has no working folder that users know
+/// \throws bin_picking::ParameterError unknown package, or a relative path: a node has no working folder that users
+/// know
 std::string resolveResource(const std::string& resource);
 
 /// Where ROS nodes keep their files: $ROS_HOME, else ~/.ros.

@@ -13,14 +13,13 @@ namespace bin_picking_ros
 namespace msgs = bin_picking_perception;
 
 ResultPublisher::ResultPublisher(ros::NodeHandle private_nh, std::string tf_prefix)
-  : tf_prefix_(std::move(tf_prefix)),
-    poses_(private_nh.advertise<geometry_msgs::PoseArray>("poses", 1, true)),
-    detections_(private_nh.advertise<msgs::DetectionArray>("detections", 1, true)),
-    grasps_(private_nh.advertise<msgs::GraspArray>("grasps", 1, true)),
-    markers_(private_nh.advertise<visualization_msgs::MarkerArray>("markers", 1, true)),
-    segmentation_(private_nh.advertise<sensor_msgs::Image>("segmentation", 1))
-{
-}
+    : tf_prefix_(std::move(tf_prefix)),
+      poses_(private_nh.advertise<geometry_msgs::PoseArray>("poses", 1, true)),
+      detections_(private_nh.advertise<msgs::DetectionArray>("detections", 1, true)),
+      grasps_(private_nh.advertise<msgs::GraspArray>("grasps", 1, true)),
+      markers_(private_nh.advertise<visualization_msgs::MarkerArray>("markers", 1, true)),
+      segmentation_(private_nh.advertise<sensor_msgs::Image>("segmentation", 1))
+{}
 
 void ResultPublisher::setMarkerMaker(std::shared_ptr<const MarkerMaker> marker_maker)
 {

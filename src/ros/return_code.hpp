@@ -27,6 +27,7 @@ private:
 /// The message with the code's name and the hint that belongs to it. \throws std::logic_error for an unknown code
 ReturnCode makeReturnCode(std::int16_t value, const std::string& message);
 
-/// The one place where exceptions become codes: RequestError, and the typed errors of the core; everything else is INTERNAL.
+/// The one place where exceptions become codes: RequestError, and the typed errors of the core; everything else is
+/// INTERNAL.
 ReturnCode translateException(const std::exception_ptr& exception);
 }  // namespace bin_picking_ros

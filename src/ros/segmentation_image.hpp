@@ -8,7 +8,7 @@
 
 namespace bin_picking_ros
 {
-/// The depth in gray with the segments over it, each in a colour of its own (rgb8): pale where a segment is no candidate
-/// target, strong where it is one.
+/// The depth in gray with the segments over it, each in a colour of its own (rgb8): pale where a segment is no
+/// candidate target, strong where it is one.
 sensor_msgs::Image toImage(const bin_picking::SegmentationView& view, const std_msgs::Header& header);
 }  // namespace bin_picking_ros

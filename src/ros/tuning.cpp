@@ -58,7 +58,7 @@ NodeParameters withConfig(NodeParameters parameters, BinPickingConfig config)
 }
 
 Tuning::Tuning(const ros::NodeHandle& private_nh, const NodeParameters& parameters, OnChange on_change)
-  : parameters_(parameters), on_change_(std::move(on_change))
+    : parameters_(parameters), on_change_(std::move(on_change))
 {
   const ros::NodeHandle tuning_nh(private_nh, "tuning");
   toConfig(parameters).__toServer__(tuning_nh);

@@ -18,7 +18,8 @@ namespace bin_picking_ros
 {
 using bin_picking_perception::BinPickingConfig;
 
-/// The thresholds that one moves while looking at rviz: name in dynamic_reconfigure and path among the node's parameters.
+/// The thresholds that one moves while looking at rviz: name in dynamic_reconfigure and path among the node's
+/// parameters.
 const std::vector<std::pair<std::string, std::string>>& tunableParameters();
 
 /// The values of `parameters` as a dynamic_reconfigure configuration, and back.
@@ -26,8 +27,8 @@ BinPickingConfig toConfig(NodeParameters parameters);
 /// \throws bin_picking::ParameterError out of the core's range
 NodeParameters withConfig(NodeParameters parameters, BinPickingConfig config);
 
-/// The dynamic_reconfigure server below ~tuning. It starts from the node's parameters, not from what an earlier run left on
-/// the parameter server.
+/// The dynamic_reconfigure server below ~tuning. It starts from the node's parameters, not from what an earlier run
+/// left on the parameter server.
 class Tuning
 {
 public:

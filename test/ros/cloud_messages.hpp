@@ -21,7 +21,7 @@ struct Layout
   std::vector<std::string> order = {"x", "y", "z"};  ///< fields as they follow each other
   bool float64 = false;
   bool big_endian = false;
-  std::uint32_t lead = 0;         ///< unused bytes before the first field of a point
+  std::uint32_t lead = 0;  ///< unused bytes before the first field of a point
   std::uint32_t point_padding = 0;
   std::uint32_t row_padding = 0;
 };

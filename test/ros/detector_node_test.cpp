@@ -1,148 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
-// The detector from cloud to answer, within this process, and what it says to bad input.
-#include "detector_node.hpp"
-
-#include <gtest/gtest.h>
-#include <ros/ros.h>
+// The detector from cloud to answer, within this process.
 #include <sensor_msgs/Image.h>
-#include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
 
-#include <boost/filesystem.hpp>
-#include <functional>
+#include <algorithm>
 #include <future>
-#include <limits>
+#include <memory>
+#include <mutex>
 
 #include "bin_picking_perception/common/error.hpp"
-#include "pose_conversion.hpp"
-#include "virtual_camera.hpp"
+#include "detector_node_fixture.hpp"
 
 namespace
 {
 using namespace bin_picking_ros;
-using bin_picking::Pose;
-using bin_picking_perception::GetBestGrasp;
-using sensor_msgs::PointCloud2;
-using test_clouds::Layout;
-using test_clouds::makeMessage;
-
-const double PATIENCE = 120;  // seconds; only reached when something is broken
-
-/// T_base_camera of the static transform: the camera looks straight down from 0.9 m.
-Pose cameraInBase()
-{
-  Pose pose = Pose::Identity();
-  pose.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  pose.translation() = Eigen::Vector3d(0.5, 0, 0.9);
-  return pose;
-}
-
-geometry_msgs::TransformStamped stamped(const std::string& parent, const std::string& child, const Pose& pose, const ros::Time& stamp)
-{
-  geometry_msgs::TransformStamped transform;
-  transform.header.frame_id = parent;
-  transform.header.stamp = stamp;
-  transform.child_frame_id = child;
-  transform.transform = toTransformMessage(pose);
-  return transform;
-}
-
-/// One node for all tests of this file: that it lives on after each of them is what they check.
-class DetectorNodeTest : public testing::Test
-{
-protected:
-  static void SetUpTestSuite()
-  {
-    scene_ = new test_clouds::BlockScene(test_clouds::renderBlock());
-    cache_ = (boost::filesystem::temp_directory_path() / boost::filesystem::unique_path()).string();
-    ros::NodeHandle nh("cell");
-    ros::NodeHandle private_nh("cell/detector");
-    setParameters(private_nh);
-    node_ = new DetectorNode(nh, private_nh);
-    camera_ = new test_clouds::VirtualCamera(nh, "points");
-    client_ = new ros::ServiceClient(private_nh.serviceClient<GetBestGrasp>("get_best_grasp"));
-    broadcaster_ = new tf2_ros::StaticTransformBroadcaster;
-    broadcaster_->sendTransform({stamped("base_link", "camera", cameraInBase(), ros::Time::now()),
-                                 stamped("island", "palm_tree", Pose::Identity(), ros::Time::now())});
-  }
-
-  static void TearDownTestSuite()
-  {
-    delete broadcaster_;
-    delete client_;
-    delete camera_;
-    delete node_;
-    delete scene_;
-    boost::filesystem::remove_all(cache_);
-  }
-
-  static void setParameters(const ros::NodeHandle& private_nh)
-  {
-    const std::string folder = std::string(BIN_PICKING_SOURCE_DIR) + "/test/ros/step_block";
-    private_nh.setParam("parts", std::vector<std::string>{folder});
-    private_nh.setParam("bin", folder + "/bin.yaml");
-    private_nh.setParam("gripper", std::string(BIN_PICKING_SOURCE_DIR) + "/config/grippers/ag95.yaml");
-    private_nh.setParam("model_cache", cache_);
-    private_nh.setParam("output_frame", "base_link");
-    private_nh.setParam("tf_prefix", "cell_");
-    private_nh.setParam("cloud_timeout", 20);
-    private_nh.setParam("deadline", 0);
-  }
-
-  /// Asks until the models are there.
-  static GetBestGrasp::Response ask(GetBestGrasp::Request request = GetBestGrasp::Request())
-  {
-    GetBestGrasp::Response response;
-    EXPECT_TRUE(client_->waitForExistence(ros::Duration(PATIENCE)));
-    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(PATIENCE);
-    do
-      EXPECT_TRUE(client_->call(request, response)) << "the call itself failed";
-    while (response.code.value == ReturnCode::NOT_READY && ros::WallTime::now() < end);
-    EXPECT_FALSE(response.code.name.empty());
-    EXPECT_EQ(response.grasps.empty(), response.code.value != ReturnCode::OK);
-    return response;
-  }
-
-  static void expectGoodAnswer()
-  {
-    camera_->start(makeMessage(scene_->grid));
-    const GetBestGrasp::Response response = ask();
-    camera_->stop();
-    ASSERT_EQ(response.code.value, ReturnCode::OK) << response.code.name << ": " << response.code.message;
-    ASSERT_FALSE(response.detections.empty());
-    expectTruth(fromMessage(response.detections[0].pose));
-  }
-
-  /// Within half a leaf and two degrees: the scene has no noise, its pixels are 1 mm wide.
-  static void expectTruth(const Pose& T_base_block)
-  {
-    const Pose difference = (cameraInBase() * scene_->T_camera_block).inverse() * T_base_block;
-    EXPECT_LT(difference.translation().norm(), 0.0015);
-    EXPECT_LT(Eigen::AngleAxisd(difference.linear()).angle(), 2 * M_PI / 180);
-  }
-
-  static test_clouds::BlockScene* scene_;
-  static DetectorNode* node_;
-  static test_clouds::VirtualCamera* camera_;
-  static ros::ServiceClient* client_;
-  static tf2_ros::StaticTransformBroadcaster* broadcaster_;
-  static std::string cache_;
-};
-
-test_clouds::BlockScene* DetectorNodeTest::scene_ = nullptr;
-DetectorNode* DetectorNodeTest::node_ = nullptr;
-test_clouds::VirtualCamera* DetectorNodeTest::camera_ = nullptr;
-ros::ServiceClient* DetectorNodeTest::client_ = nullptr;
-tf2_ros::StaticTransformBroadcaster* DetectorNodeTest::broadcaster_ = nullptr;
-std::string DetectorNodeTest::cache_;
-
-/// The next message of a topic, or the latched one.
-template <typename Message>
-boost::shared_ptr<const Message> receive(const std::string& topic)
-{
-  return ros::topic::waitForMessage<Message>(topic, ros::Duration(PATIENCE));
-}
 
 // First in this file: nothing has been published yet.
 TEST_F(DetectorNodeTest, SaysThatNoCloudHasCome)
@@ -220,9 +92,9 @@ TEST_F(DetectorNodeTest, SegmentationIsPublishedToSubscribers)
   ros::NodeHandle nh;
   std::promise<sensor_msgs::Image> promise;
   std::once_flag once;
-  const auto subscriber = nh.subscribe<sensor_msgs::Image>("/cell/detector/segmentation", 1, [&](const sensor_msgs::ImageConstPtr& image) {
-    std::call_once(once, [&] { promise.set_value(*image); });
-  });
+  const auto subscriber = nh.subscribe<sensor_msgs::Image>(
+      "/cell/detector/segmentation", 1,
+      [&](const sensor_msgs::ImageConstPtr& image) { std::call_once(once, [&] { promise.set_value(*image); }); });
   auto image = promise.get_future();
   camera_->start(makeMessage(scene_->grid));
   const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(PATIENCE);
@@ -301,93 +173,6 @@ TEST_F(DetectorNodeTest, OldCloudsAndPassedDeadlines)
   expectGoodAnswer();
 }
 
-struct CloudCase
-{
-  const char* name;
-  std::function<PointCloud2(const bin_picking::DepthGrid&)> make;
-  std::int16_t expected;
-};
-
-class CloudCaseTest : public DetectorNodeTest, public testing::WithParamInterface<CloudCase>
-{
-};
-
-TEST_P(CloudCaseTest, IsAnsweredWithItsCode)
-{
-  camera_->start(GetParam().make(scene_->grid));
-  const auto response = ask();
-  camera_->stop();
-  EXPECT_EQ(response.code.value, GetParam().expected) << response.code.name << ": " << response.code.message;
-  EXPECT_FALSE(response.code.message.empty());
-  if (GetParam().expected < 0)
-  {
-    EXPECT_TRUE(response.detections.empty());
-    EXPECT_FALSE(response.code.hint.empty());
-    const auto latched = receive<bin_picking_perception::DetectionArray>("/cell/detector/detections");
-    ASSERT_TRUE(latched);
-    EXPECT_EQ(latched->code.value, GetParam().expected) << "an old result is still latched";
-  }
-  expectGoodAnswer();
-}
-
-PointCloud2 without(const bin_picking::DepthGrid& grid, const char* field)
-{
-  Layout layout;
-  layout.order.erase(std::find(layout.order.begin(), layout.order.end(), field));
-  return makeMessage(grid, layout);
-}
-
-const float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
-
-const std::vector<CloudCase> CLOUD_CASES = {
-    {"Empty", [](const auto&) { auto m = PointCloud2(); m.header.frame_id = "camera"; return m; }, ReturnCode::BAD_CLOUD},
-    {"Unorganized",
-     [](const auto& grid) {
-       auto m = makeMessage(grid);
-       m.width *= m.height;
-       m.height = 1;
-       m.row_step = m.width * m.point_step;
-       return m;
-     },
-     ReturnCode::BAD_CLOUD},
-    {"AllNan", [](const auto& grid) { return makeMessage(test_clouds::mapped(grid, [](float) { return NOT_A_NUMBER; })); },
-     ReturnCode::BAD_CLOUD},
-    {"AllZero", [](const auto& grid) { return makeMessage(test_clouds::mapped(grid, [](float) { return 0.0f; })); },
-     ReturnCode::BAD_CLOUD},
-    {"WithoutX", [](const auto& grid) { return without(grid, "x"); }, ReturnCode::BAD_CLOUD},
-    {"WithoutY", [](const auto& grid) { return without(grid, "y"); }, ReturnCode::BAD_CLOUD},
-    {"WithoutZ", [](const auto& grid) { return without(grid, "z"); }, ReturnCode::BAD_CLOUD},
-    {"Truncated", [](const auto& grid) { auto m = makeMessage(grid); m.data.resize(m.data.size() / 2); return m; },
-     ReturnCode::BAD_CLOUD},
-    {"Millimetres", [](const auto& grid) { return makeMessage(test_clouds::mapped(grid, [](float v) { return 1000 * v; })); },
-     ReturnCode::UNIT_SUSPECT},
-    {"WithoutFrame", [](const auto& grid) { auto m = makeMessage(grid); m.header.frame_id.clear(); return m; },
-     ReturnCode::BAD_CLOUD},
-    {"UnknownFrame", [](const auto& grid) { auto m = makeMessage(grid); m.header.frame_id = "moon"; return m; },
-     ReturnCode::TF_UNKNOWN_FRAME},
-    {"EmptyBin",
-     [](auto grid) {
-       for (int i = 0; i < static_cast<int>(grid.size()); ++i)
-         if (grid.z[static_cast<std::size_t>(i)] < 0.5999f)
-           grid.invalidate(i);
-       return makeMessage(grid);
-     },
-     ReturnCode::BIN_EMPTY},
-    {"Float64", [](const auto& grid) { Layout l; l.float64 = true; return makeMessage(grid, l); }, ReturnCode::OK},
-    {"BigEndian", [](const auto& grid) { Layout l; l.big_endian = true; return makeMessage(grid, l); }, ReturnCode::OK},
-    {"PaddedAndShuffled",
-     [](const auto& grid) { Layout l; l.order = {"z", "y", "x"}; l.lead = 4; l.row_padding = 12; return makeMessage(grid, l); },
-     ReturnCode::OK},
-    {"ZeroWhereNotMeasured",
-     [](const auto& grid) {
-       return makeMessage(test_clouds::mapped(grid, [](float v) { return std::isnan(v) ? 0.0f : v; }));
-     },
-     ReturnCode::OK},
-};
-
-INSTANTIATE_TEST_SUITE_P(Clouds, CloudCaseTest, testing::ValuesIn(CLOUD_CASES),
-                         [](const auto& cloud_case) { return std::string(cloud_case.param.name); });
-
 TEST_F(DetectorNodeTest, TuningChangesTheNextAnswer)
 {
   const auto set = [](double tilt) {
@@ -436,7 +221,8 @@ TEST_F(DetectorNodeTest, ContinuousProcessingAndEndWhileACallWaits)
     return waiting.response.code.value;
   });
   second.reset();
-  ASSERT_EQ(call.wait_for(std::chrono::seconds(10)), std::future_status::ready) << "the end of the node hangs behind a call";
+  ASSERT_EQ(call.wait_for(std::chrono::seconds(10)), std::future_status::ready)
+      << "the end of the node hangs behind a call";
 }
 
 TEST_F(DetectorNodeTest, WrongParametersAreRefusedAtTheStart)

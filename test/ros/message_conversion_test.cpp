@@ -141,7 +141,8 @@ TEST(MessageConversion, ResponseHoldsEverythingInTheOutputFrame)
     EXPECT_EQ(response.detections[i].index, i);
     EXPECT_EQ(response.detections[i].accepted, i < 2);
     EXPECT_EQ(response.detections[i].rejection.empty(), i < 2);
-    EXPECT_TRUE(fromMessage(response.detections[i].pose).isApprox(output.T_output_camera * source.T_camera_object, 1e-9));
+    EXPECT_TRUE(
+        fromMessage(response.detections[i].pose).isApprox(output.T_output_camera * source.T_camera_object, 1e-9));
     EXPECT_EQ(response.detections[i].header.stamp, ros::Time(12, 34));
     ASSERT_EQ(response.detections[i].criteria.size(), 2u);
     EXPECT_EQ(response.detections[i].criteria[0].passed, i < 2);
@@ -196,7 +197,8 @@ TEST(Markers, ShowEveryDetectionInItsColour)
       EXPECT_TRUE(fromMessage(markers[i].pose).translation().isApprox(center, 1e-9));
     }
   }
-  const std::map<std::string, int> expected = {{"parts", 2}, {"labels", 2}, {"rejected", 1}, {"bin", 1}, {"grasp", 1}, {"gripper", 2}};
+  const std::map<std::string, int> expected = {{"parts", 2}, {"labels", 2}, {"rejected", 1},
+                                               {"bin", 1},   {"grasp", 1},  {"gripper", 2}};
   EXPECT_EQ(count, expected);
 }
 
@@ -225,8 +227,10 @@ TEST(Markers, LargeMeshesAreSimplified)
   EXPECT_GT(small.triangles.size(), 500u);
   double area = 0;
   for (const auto& t : small.triangles)
-    area += 0.5 * (small.vertices[t[1]] - small.vertices[t[0]]).cross(small.vertices[t[2]] - small.vertices[t[0]]).norm();
-  EXPECT_NEAR(area, 4 * M_PI * 0.05 * 0.05, 0.1 * 4 * M_PI * 0.05 * 0.05);  // chords of cells of 6 mm lie inside the ball
+    area +=
+        0.5 * (small.vertices[t[1]] - small.vertices[t[0]]).cross(small.vertices[t[2]] - small.vertices[t[0]]).norm();
+  EXPECT_NEAR(area, 4 * M_PI * 0.05 * 0.05,
+              0.1 * 4 * M_PI * 0.05 * 0.05);  // chords of cells of 6 mm lie inside the ball
   EXPECT_EQ(simplifyForDisplay(mesh, 40000).triangles.size(), mesh.triangles.size());
 }
 

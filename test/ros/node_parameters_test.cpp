@@ -52,7 +52,7 @@ std::string readText(const std::string& path)
 TEST(NodeParameters, ReadsNestedMapsAndConfusedTypes)
 {
   XmlRpcValue tree = minimalTree();
-  tree["max_age"] = 3;             // a whole number for a double
+  tree["max_age"] = 3;  // a whole number for a double
   tree["process"] = "continuous";
   tree["detector"]["max_detections"] = 7.0;  // a double for a whole number
   tree["detector"]["verification"]["enabled"] = false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
-// The nodelets as plugins of one manager: a scene from a file, played on request, answered by the detector. Then the clients.
+// The nodelets as plugins of one manager: a scene from a file, played on request, answered by the detector. Then the
+// clients.
 #include <bin_picking_perception/GetBestGrasp.h>
 #include <gtest/gtest.h>
 #include <nodelet/loader.h>
@@ -8,7 +9,7 @@
 #include <std_srvs/Trigger.h>
 
 #include <boost/filesystem.hpp>
-#include <future>
+#include <cstdlib>
 
 #include "bin_picking_perception/scene/cloud_input.hpp"
 #include "virtual_camera.hpp"
@@ -93,8 +94,8 @@ TEST(LaunchFile, ItsNodeAnswersAndTheClientsUnderstandIt)
   test_clouds::VirtualCamera camera(nh, "camera/points");
   camera.start(test_clouds::makeMessage(test_clouds::renderBlock().grid));
   ASSERT_TRUE(ros::service::waitForService("detector/get_best_grasp", PATIENCE));
-  for (const char* client : {"pick_client", "pick_client.py"})
-    EXPECT_EQ(std::system((std::string("rosrun bin_picking_perception ") + client).c_str()), 0) << client;
+  for (const char* client : {BIN_PICKING_PROGRAM_DIR "/pick_client", BIN_PICKING_SOURCE_DIR "/scripts/pick_client.py"})
+    EXPECT_EQ(std::system(client), 0) << client;
 }
 }  // namespace
 

@@ -27,10 +27,11 @@ struct BlockScene
 inline BlockScene renderBlock()
 {
   BlockScene scene;
-  // The bin's floor is z = 0.6; up is -z. The block lies flat on it, turned by 0.7 rad, beside the optical axis, so that
-  // two of its sides are seen as well.
+  // The bin's floor is z = 0.6; up is -z. The block lies flat on it, turned by 0.7 rad, beside the optical axis, so
+  // that two of its sides are seen as well.
   scene.T_camera_block.linear() =
-      (Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ())).toRotationMatrix();
+      (Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()))
+          .toRotationMatrix();
   scene.T_camera_block.translation() = Eigen::Vector3d(0.05, -0.04, 0.6);
   const std::string mesh_file = std::string(BIN_PICKING_SOURCE_DIR) + "/test/ros/step_block/step_block.obj";
   const auto block = bin_picking::loadMesh(mesh_file, bin_picking::LengthUnit::Millimetre);
@@ -52,7 +53,9 @@ inline BlockScene renderBlock()
 class VirtualCamera
 {
 public:
-  VirtualCamera(ros::NodeHandle nh, const std::string& topic) : publisher_(nh.advertise<sensor_msgs::PointCloud2>(topic, 1)) {}
+  VirtualCamera(ros::NodeHandle nh, const std::string& topic)
+      : publisher_(nh.advertise<sensor_msgs::PointCloud2>(topic, 1))
+  {}
   ~VirtualCamera() { stop(); }
 
   void start(const sensor_msgs::PointCloud2& cloud)
