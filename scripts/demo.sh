@@ -6,7 +6,7 @@
 #   --seed N                 another bin (default: 1)
 #   --headless               no rviz, even with a display
 #   --rviz-screenshot FILE   renders rviz on a virtual display into a PNG
-#   BUILD_DIR=DIR            build folder (default: build-release); the demo's files go to BUILD_DIR/demo
+#   BUILD_DIR=DIR            build folder (default: build); the demo's files go to BUILD_DIR/demo
 # Exit code 1 if the part of the best grasp is off by more than 5 mm or 5 degrees.
 set -euo pipefail
 start_dir=$PWD
@@ -32,21 +32,22 @@ while [ $# -gt 0 ]; do
   esac
 done
 
-build_dir=${BUILD_DIR:-build-release}
+build_dir=${BUILD_DIR:-build}
 case "$build_dir" in /*) ;; *) build_dir=$source_dir/$build_dir ;; esac
+devel_dir=$(dirname "$build_dir")/devel
 scripts/setup.sh
-scripts/build.sh
+DEVEL_DIR=$devel_dir scripts/build.sh
 out=$build_dir/demo
 scene=$out/scene
 mkdir -p "$out"
 
 set +u  # ROS's setup files read variables that are not set
 # shellcheck disable=SC1091
-. "$build_dir/devel/setup.sh"
+. "$devel_dir/setup.sh"
 set -u
 # Other python3 than the system's, first on PATH, lack ROS's modules.
-export PATH="$build_dir/devel/lib/bin_picking_perception:/usr/bin:$PATH"
-command -v bin_picking >/dev/null || fail "the build left no bin_picking in $build_dir/devel."
+export PATH="$devel_dir/lib/bin_picking_perception:/usr/bin:$PATH"
+command -v bin_picking >/dev/null || fail "the build left no bin_picking in $devel_dir."
 
 log "a virtual bin, seed $seed"
 bin_picking demo-scene "$part" --seed "$seed" -o "$scene"

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Runs clang-tidy (.clang-tidy) over our sources. Needs a configured build folder for the compile commands.
 # Usage: scripts/tidy.sh [FILE...]      without files: everything under src
-#   BUILD_DIR=DIR    build folder (default: build-release)
+#   BUILD_DIR=DIR    build folder (default: build)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-build_dir=${BUILD_DIR:-build-release}
+build_dir=${BUILD_DIR:-build}
 command -v clang-tidy >/dev/null || { echo "tidy: clang-tidy is missing: apt-get install clang-tidy" >&2; exit 1; }
 [ -f "$build_dir/compile_commands.json" ] ||
   { echo "tidy: $build_dir/compile_commands.json is missing: run scripts/build.sh first" >&2; exit 1; }
