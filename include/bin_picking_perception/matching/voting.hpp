@@ -15,8 +15,8 @@ class Executor;
 
 struct VotingParameters
 {
-  double reference_share = 0.025;
-  int min_references = 8;
+  double reference_share = 0.033;
+  int min_references = 12;
   double max_pair_distance = 1.0;
   int weight = 1;
   double curvature_spread = 0.3;

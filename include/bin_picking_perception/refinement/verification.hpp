@@ -16,12 +16,12 @@ struct VerificationParameters
   bool enabled = true;                // false: only the matching rate decides, as in the paper
   double match_distance = 0.005;
   double min_matching_rate = 0.5;
-  double depth_tolerance = 0.1;
-  double noise_tolerance = 5.5;
+  double depth_tolerance = 0.02;
+  double noise_tolerance = 8;
   double max_normal_angle = 0.7;
-  double min_outline_share = 0.35;
-  double min_score = 0.435;
-  double min_visible_fraction = 0.35;
+  double min_outline_share = 0.62;
+  double min_score = 0.42;
+  double min_visible_fraction = 0.42;
   double min_inlier_share = 0.6;
   double max_violation_share = 0.2;
   double unmeasured_weight = 0.3;

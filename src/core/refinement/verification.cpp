@@ -15,7 +15,7 @@ void VerificationParameters::visit(ParameterVisitor& v)
   v.field({"enabled", "", "test poses against the depth grid; false: only the matching rate decides (the paper)"}, enabled);
   v.field({"match_distance", "m", "distance threshold of the matching rate (Equation 9)", 1e-4, 0.1}, match_distance);
   v.field({"min_matching_rate", "", "smallest accepted matching rate", 0, 1}, min_matching_rate);
-  v.field({"depth_tolerance", "", "distance to the surface that still explains a point, in leaves, noise not counted", 0.01, 5},
+  v.field({"depth_tolerance", "", "distance to the surface that still explains a point, in leaves, noise not counted", 0.0, 5},
           depth_tolerance);
   v.field({"noise_tolerance", "", "what is added to it, in standard deviations of the measured noise", 0, 20}, noise_tolerance);
   v.field({"max_normal_angle", "rad", "a point whose normal is turned by more is not explained", 0.05, 3.2}, max_normal_angle);
