@@ -12,7 +12,7 @@ namespace bin_picking
 /// derived value.
 struct TrainingParameters
 {
-  double leaf = 0;                 // 0: 4 % of the diameter, at most 6 mm
+  double leaf = 0;                 // 0: 4 % of the diameter, at most 6 mm or 1.5 %
   double surface_spacing = 0;      // 0: half the leaf
   int seed = 1;
   double normal_radius = 0;        // 0: 1.3 leaf

@@ -15,7 +15,8 @@ namespace bin_picking
 namespace
 {
 constexpr double AUTOMATIC_LEAF_SHARE = 0.04;  // of the diameter
-constexpr double MAX_AUTOMATIC_LEAF = 0.006;   // large parts have small features too
+constexpr double MAX_AUTOMATIC_LEAF = 0.006;   // large parts have small features too, ...
+constexpr double MIN_LEAF_SHARE = 0.015;       // ... but the table has a limit
 constexpr double MIN_SEEN_SHARE = 0.02;        // of the views; what is seen from fewer is inside the part
 constexpr std::size_t MIN_MODEL_POINTS = 30;
 
@@ -23,7 +24,7 @@ constexpr std::size_t MIN_MODEL_POINTS = 30;
 void resolve(TrainingParameters& p, double diameter)
 {
   const auto automatic = [](double& value, double derived) { value = value > 0 ? value : derived; };
-  automatic(p.leaf, std::min(AUTOMATIC_LEAF_SHARE * diameter, MAX_AUTOMATIC_LEAF));
+  automatic(p.leaf, std::min(AUTOMATIC_LEAF_SHARE * diameter, std::max(MAX_AUTOMATIC_LEAF, MIN_LEAF_SHARE * diameter)));
   automatic(p.surface_spacing, p.leaf / 2);
   automatic(p.normal_radius, 1.3 * p.leaf);
   automatic(p.curvature_radius, p.leaf * 10 / 3);
