@@ -100,6 +100,18 @@ std::vector<fs::path> clouds(const fs::path& folder, const std::string& prefix)
   return files;
 }
 
+void printScores(const DetectionResult& result)
+{
+  for (const auto& d : result.detections)
+  {
+    std::printf("    score %.3f visible %.3f rms %.2f mm", d.score, d.visible_fraction, 1e3 * d.rms);
+    for (const auto& criterion : d.criteria)
+      if (criterion.name != "score" && criterion.name != "visible_fraction")
+        std::printf(" %s %.3f", criterion.name.c_str(), criterion.value);
+    std::printf("\n");
+  }
+}
+
 struct Totals
 {
   int listed = 0;
@@ -151,24 +163,20 @@ int run(const Options& options)
   {
     const auto result = detect(file);
     report(file, result, *model, readTruth(fs::path(file).replace_extension(".json")), totals);
-    for (const auto& d : result.detections)
-      std::printf("    score %.3f rate %.3f visible %.3f inlier %.3f violation %.3f outline %.3f rms %.2f mm\n", d.score, d.matching_rate,
-                  d.visible_fraction, d.criteria[1].value, d.criteria[3].value, d.criteria[5].value, 1e3 * d.rms);
+    printScores(result);
   }
   std::printf("listed silver poses found within 5 mm and 10 deg: %d of %d (%.1f %%)\n", totals.found, totals.listed,
               100.0 * totals.found / totals.listed);
   std::size_t false_ones = 0;
   for (const auto& [folder, prefix] : {std::pair<const char*, const char*>("phoxi_bins", ""), {"pipes", "pipes_180"}})
-  for (const auto& file : clouds(options.data / folder, prefix))
-  {
-    const auto result = detect(file);
-    std::printf("%s: %zu accepted, %.0f ms; %s\n", file.stem().c_str(), result.detections.size(), 1e3 * result.total_seconds,
-                result.message.c_str());
-    for (const auto& d : result.detections)
-      std::printf("    score %.3f rate %.3f visible %.3f inlier %.3f violation %.3f outline %.3f rms %.2f mm\n", d.score, d.matching_rate,
-                  d.visible_fraction, d.criteria[1].value, d.criteria[3].value, d.criteria[5].value, 1e3 * d.rms);
-    false_ones += result.detections.size();
-  }
+    for (const auto& file : clouds(options.data / folder, prefix))
+    {
+      const auto result = detect(file);
+      std::printf("%s: %zu accepted, %.0f ms; %s\n", file.stem().c_str(), result.detections.size(), 1e3 * result.total_seconds,
+                  result.message.c_str());
+      printScores(result);
+      false_ones += result.detections.size();
+    }
   std::printf("elbows accepted where there is none: %zu\n", false_ones);
   return 0;
 }

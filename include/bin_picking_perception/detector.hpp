@@ -110,8 +110,8 @@ public:
   DetectionResult detect(const pcl::PointCloud<pcl::PointXYZ>& cloud, const Request& request) const;
   DetectionResult detect(const DepthGrid& grid, const Request& request) const;
 
-  /// The (one) part in an unorganized oriented point set: no camera grid, no segmentation; voting, clustering, ICP and
-  /// matching rate only. Best first. For whole scans and for the paper's public data sets.
+  /// The (one) part in an unorganized oriented point set: no camera grid, no segmentation; voting, clustering, ICP (point to
+  /// point, since there is no grid, unless switched off) and matching rate only. Best first. For whole scans and for the paper's public data sets.
   /// \param scene_is_part true: every scene point belongs to the part, so that all count in Equation 9; false: only those
   ///   inside the part's bounding box at the pose
   /// \throws ParameterError if the detector holds more than one model; CloudError Empty for no points

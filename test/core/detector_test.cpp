@@ -137,6 +137,40 @@ TEST(Detector, emptyBinIsAnOrdinaryResultThatSaysSo)
   EXPECT_NE(result.message.find("empty"), std::string::npos);
 }
 
+TEST(Detector, aSceneThatIsEmptyForOnePartDoesNotLoseTheOther)
+{
+  TrainingParameters coarse;
+  coarse.leaf = 0.012;
+  PartDefinition definition = test::teeDefinition();
+  definition.name = "coarse_tee";
+  const auto coarse_model = trainPart(definition, coarse, Executor(2));
+  const auto truth = test::posesApart(2, 1);
+  const DepthGrid grid = test::renderTees(truth, SIGMA);
+  Detector::Request request;
+  request.bin = test::wideBin();
+  const auto points = [&](const std::shared_ptr<const TrainedModel>& model) {
+    const auto counts = Detector({model}, {}).detect(grid, request).counts;
+    return std::find_if(counts.begin(), counts.end(), [](const StageCount& c) { return c.stage == "points"; })->count;
+  };
+  const double fine = points(test::teeModel());
+  const double rough = points(coarse_model);
+  ASSERT_NE(fine, rough);
+  // The limit lies between: the scene is empty at one leaf and not at the other.
+  DetectorParameters parameters;
+  parameters.input.empty_bin_points = static_cast<int>((fine + rough) / 2);
+  const auto alone = Detector({fine > rough ? test::teeModel() : coarse_model}, parameters).detect(grid, request);
+  ASSERT_NE(alone.code, DetectionCode::BinEmpty);
+  for (const bool coarse_first : {true, false})
+  {
+    std::vector<std::shared_ptr<const TrainedModel>> models = {test::teeModel(), coarse_model};
+    if (coarse_first)
+      std::swap(models[0], models[1]);
+    const auto both = Detector(models, parameters).detect(grid, request);
+    EXPECT_EQ(both.code, alone.code) << both.message;
+    EXPECT_EQ(both.detections.size(), alone.detections.size());
+  }
+}
+
 TEST(Detector, otherThingsAreNoMatchWithReasons)
 {
   DepthRenderer renderer(480, 384, test::smallCamera());
@@ -201,6 +235,20 @@ TEST(Match, findsThePartInAWholeScan)
   EXPECT_EQ(indexOf({result.detections.front()}, truth), 0);
   EXPECT_GT(result.detections.front().matching_rate, 0.999);
   EXPECT_THROW(detector().match({}, true), CloudError);
+}
+
+TEST(Match, saysWhyNothingWasFoundAndThatTimeWasUp)
+{
+  const OrientedPoints ball = test::sphere(0.05, 20000);
+  DetectorParameters parameters = DetectorParameters::preset("paper");
+  parameters.verification.min_matching_rate = 1;
+  const DetectionResult other = detector(parameters).match(ball, true);
+  EXPECT_EQ(other.code, DetectionCode::NoMatch);
+  EXPECT_NE(other.message.find("matching_rate is"), std::string::npos) << other.message;
+  parameters.deadline = 1e-9;
+  const DetectionResult late = detector(parameters).match(ball, true);
+  EXPECT_TRUE(late.partial);
+  EXPECT_NE(late.message.find("deadline"), std::string::npos) << late.message;
 }
 }  // namespace
 }  // namespace bin_picking

@@ -66,24 +66,11 @@ SegmentationView viewOf(Segmentation&& segmentation, const std::vector<Candidate
   return view;
 }
 
-DetectionResult emptyBin(DetectionResult&& result, double measured, int required)
+void reportEmptyBin(DetectionResult& result, double measured, int required)
 {
   result.code = DetectionCode::BinEmpty;
   result.message = "the bin is empty: about " + std::to_string(static_cast<long>(measured)) +
                    " points lie inside the limits, fewer than " + std::to_string(required) + " (input/empty_bin_points)";
-  return std::move(result);
-}
-
-void summarize(DetectionResult& result)
-{
-  const std::string late = result.partial ? "; the deadline passed, so this is what was ready" : "";
-  result.code = result.detections.empty() ? DetectionCode::NoMatch : DetectionCode::Ok;
-  if (result.detections.empty())
-    result.message = "no part was recognised; the best of " + std::to_string(result.rejected.size()) +
-                     " rejected poses: " + (result.rejected.empty() ? "none" : result.rejected.front().rejection) + late;
-  else
-    result.message = std::to_string(result.detections.size()) + " part(s) found, the best with a score of " +
-                     std::to_string(result.detections.front().score).substr(0, 4) + late;
 }
 }  // namespace
 
@@ -97,16 +84,15 @@ DetectionResult Detector::detect(const DepthGrid& grid, const Request& request) 
 
   const int comparison_cell = comparisonCell(grid, models_);
   std::vector<Assessed> assessed;
+  double most_measured = 0;  // parts see the scene at their own leaf: empty is what is empty for all
   for (const std::size_t index : indices)
   {
     const TrainedModel& model = *models_[index];
     PreparedScene scene = reduceScene(grid, bin, model, parameters_, clock);
     const double measured = measuredPoints(scene);
+    most_measured = std::max(most_measured, measured);
     if (measured < parameters_.input.empty_bin_points)
-    {
-      clock.finish();
-      return emptyBin(std::move(result), measured, parameters_.input.empty_bin_points);
-    }
+      continue;
     clock.count("points", measured);
     describeScene(scene, model, parameters_, executor_, clock);
     Segmentation segmentation = segmentScene(scene.grid, parameters_.segmentation, bin);
@@ -125,7 +111,10 @@ DetectionResult Detector::detect(const DepthGrid& grid, const Request& request) 
   }
   selectDetections(std::move(assessed), parameters_, result);
   clock.lap("selection");
-  summarize(result);
+  if (most_measured < parameters_.input.empty_bin_points)
+    reportEmptyBin(result, most_measured, parameters_.input.empty_bin_points);
+  else
+    summarize(result);
   clock.finish();
   return result;
 }

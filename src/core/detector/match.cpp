@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <algorithm>
+#include <limits>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
@@ -34,6 +35,7 @@ Detection assess(const PoseCluster& cluster, const OrientedPoints& scene, const 
   detection.part = model.name;
   detection.votes = cluster.votes;
   detection.T_camera_object = cluster.T_camera_object;
+  detection.rms = std::numeric_limits<double>::quiet_NaN();  // without ICP nothing was fitted
   if (icp.method != IcpMethod::None)
   {
     const IcpResult refined =
@@ -48,9 +50,9 @@ Detection assess(const PoseCluster& cluster, const OrientedPoints& scene, const 
   const double matched = detection.matching_rate * static_cast<double>(object_points.size());
   detection.visible_fraction = std::min(1.0, matched / (0.5 * static_cast<double>(model.points.size())));
   detection.score = detection.matching_rate * std::sqrt(detection.visible_fraction);
-  if (detection.matching_rate < parameters.verification.min_matching_rate)
-    detection.rejection = "matching_rate is " + std::to_string(detection.matching_rate).substr(0, 5) + ", but must be at least " +
-                          std::to_string(parameters.verification.min_matching_rate).substr(0, 5);
+  detection.criteria.push_back({"matching_rate", detection.matching_rate, parameters.verification.min_matching_rate, false});
+  if (!detection.criteria.front().passed())
+    detection.rejection = failureText(detection.criteria.front());
   return detection;
 }
 }  // namespace
@@ -91,8 +93,7 @@ DetectionResult Detector::match(const OrientedPoints& scene, bool scene_is_part)
                    [](const Detection& a, const Detection& b) { return a.score > b.score; });
   for (auto& detection : detections)
     (detection.rejection.empty() ? result.detections : result.rejected).push_back(std::move(detection));
-  result.code = result.detections.empty() ? DetectionCode::NoMatch : DetectionCode::Ok;
-  result.message = std::to_string(result.detections.size()) + " pose(s) with a sufficient matching rate";
+  summarize(result);
   clock.finish();
   return result;
 }

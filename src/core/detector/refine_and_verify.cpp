@@ -5,6 +5,7 @@
 
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/refinement/icp.hpp"
+#include "../common/parameter_text.hpp"
 #include "stages.hpp"
 
 namespace bin_picking
@@ -89,8 +90,7 @@ void judge(Detection& detection, const PoseEvidence& evidence, const OutlineEvid
   }
   for (const auto& criterion : detection.criteria)
     if (!criterion.passed() && detection.rejection.empty())
-      detection.rejection = criterion.name + " is " + std::to_string(criterion.value).substr(0, 5) + ", but must be at " +
-                            (criterion.upper_limit ? "most " : "least ") + std::to_string(criterion.required).substr(0, 5);
+      detection.rejection = failureText(criterion);
 }
 
 Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
@@ -163,6 +163,24 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
   return ready;
 }
 
+std::string failureText(const Criterion& criterion)
+{
+  return criterion.name + " is " + roundedText(criterion.value, 3) + ", but must be at " +
+         (criterion.upper_limit ? "most " : "least ") + roundedText(criterion.required, 3);
+}
+
+void summarize(DetectionResult& result)
+{
+  const std::string late = result.partial ? "; the deadline passed, so this is what was ready" : "";
+  result.code = result.detections.empty() ? DetectionCode::NoMatch : DetectionCode::Ok;
+  if (result.detections.empty())
+    result.message = "no part was recognised; the best of " + std::to_string(result.rejected.size()) +
+                     " rejected poses: " + (result.rejected.empty() ? "none" : result.rejected.front().rejection) + late;
+  else
+    result.message = std::to_string(result.detections.size()) + " part(s) found, the best with a score of " +
+                     roundedText(result.detections.front().score, 2) + late;
+}
+
 void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& parameters, DetectionResult& result)
 {
   std::stable_sort(assessed.begin(), assessed.end(), [](const Assessed& a, const Assessed& b) {
@@ -177,7 +195,7 @@ void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& 
                           std::back_inserter(shared));
     const double overlap = static_cast<double>(shared.size()) / std::max<double>(1, static_cast<double>(candidate.cells.size()));
     if (detection.rejection.empty() && overlap > parameters.verification.overlap)
-      detection.rejection = "a better detection explains " + std::to_string(100 * overlap).substr(0, 4) + " % of what it explains";
+      detection.rejection = "a better detection explains " + roundedText(100 * overlap, 0) + " % of what it explains";
     if (detection.rejection.empty() && static_cast<int>(result.detections.size()) >= parameters.max_detections)
       detection.rejection = "max_detections better ones were found";
     if (!detection.rejection.empty())

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "bin_picking_perception/common/deadline.hpp"
@@ -75,6 +76,12 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
                                       const TrainedModel& model, const DetectorParameters& parameters,
                                       int comparison_cell, const Deadline& deadline, const Executor& executor,
                                       StageClock& clock, bool& partial);
+
+/// "score is 0.41, but must be at least 0.42".
+std::string failureText(const Criterion& criterion);
+
+/// Sets the code and the message from what was found, rejected and left undone.
+void summarize(DetectionResult& result);
 
 /// Sorts by score; rejects what failed a criterion and what explains the same cells as better ones.
 void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& parameters, DetectionResult& result);
