@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "bin_picking_perception/common/oriented_points.hpp"
+#include "bin_picking_perception/common/parameters.hpp"
+#include "rigid_body.hpp"
+
+namespace bin_picking::simulation
+{
+struct PhysicsParameters
+{
+  double friction = 0.35;
+  double restitution = 0.05;
+  double drop_height = 0.05;
+  double drop_interval = 0.12;
+  double time_step = 0.004;
+  double max_settling_time = 8;
+
+  void visit(ParameterVisitor& v);
+};
+
+/// One part in the bin.
+struct Body
+{
+  int id = 0;     ///< never used twice in one BinPhysics
+  int shape = 0;  ///< index into the shapes given to the constructor
+  Pose T_bin_object = Pose::Identity();
+};
+
+/// Rigid bodies in a bin under gravity (Bullet). Frame: origin in the middle of the inner floor, z up, x along the
+/// length. The same calls in the same order give the same bits. Not thread-safe.
+class BinPhysics
+{
+public:
+  /// Called now and then with the share that is done, [0, 1].
+  using Progress = std::function<void(double)>;
+
+  /// \param inner_size length, width, height of the bin, metres
+  /// \throws ParameterError a parameter is out of its range; a shape does not fit into the bin
+  BinPhysics(std::vector<std::shared_ptr<const RigidBodyShape>> shapes, const Eigen::Vector3d& inner_size,
+             const PhysicsParameters& parameters);
+  ~BinPhysics();
+  BinPhysics(BinPhysics&&) noexcept;
+  BinPhysics& operator=(BinPhysics&&) noexcept;
+
+  /// Drops parts one after the other, at random places and attitudes, just above what lies there already, and waits
+  /// until all rest. Parts that end outside are dropped once more.
+  /// \param shape_indices what to drop, in this order
+  /// \throws ParameterError the bin is too full: parts remain above the rim or outside
+  void drop(const std::vector<int>& shape_indices, std::uint32_t seed, const Progress& progress = {});
+
+  /// Takes a part away and waits until the others rest. False: there is no such part.
+  bool remove(int id);
+  /// Lifts a part out and lets it fall back in at a random place and attitude; waits until all rest. False: as above.
+  bool dropAgain(int id, std::uint32_t seed);
+
+  /// In the order of dropping.
+  std::vector<Body> bodies() const;
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+}  // namespace bin_picking::simulation
