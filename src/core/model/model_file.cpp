@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
-#include <unistd.h>
-
 #include <array>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
+#include "../common/replace_file.hpp"
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
 #include "binary_stream.hpp"
@@ -65,8 +64,9 @@ std::uint64_t checkHeader(BinaryReader& in, const std::string& path)
     fail(path, "is longer than it says: " + std::to_string(in.left()) + " bytes instead of " + std::to_string(size));
   return hash;
 }
+}  // namespace
 
-void writeFile(const TrainedModel& model, const std::string& path)
+void saveModel(const TrainedModel& model, const std::string& path)
 {
   const std::vector<char> payload = writePayload(model);
   BinaryWriter header;
@@ -75,36 +75,10 @@ void writeFile(const TrainedModel& model, const std::string& path)
   header.value(BYTE_ORDER_MARK);
   header.value(static_cast<std::uint64_t>(payload.size()));
   header.value(hashBytes(payload.data(), payload.size()));
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file.write(header.bytes().data(), static_cast<std::streamsize>(header.bytes().size()));
-  file.write(payload.data(), static_cast<std::streamsize>(payload.size()));
-  file.close();
-  if (!file)
-    throw FileError("cannot write '" + path + "'; check that the folder exists, may be written and has space left");
-}
-}  // namespace
-
-void saveModel(const TrainedModel& model, const std::string& path)
-{
-  // Renaming replaces the old file at once: whoever reads meanwhile sees the old or the new one, never a part.
-  const std::string temporary = path + "." + std::to_string(getpid()) + ".tmp";
-  std::error_code error;
-  try
-  {
-    writeFile(model, temporary);
-  }
-  catch (const FileError&)
-  {
-    std::filesystem::remove(temporary, error);
-    throw;
-  }
-  std::filesystem::rename(temporary, path, error);
-  if (error)
-  {
-    const std::string reason = error.message();
-    std::filesystem::remove(temporary, error);
-    throw FileError("cannot write '" + path + "' (" + reason + "); check the path");
-  }
+  replaceFile(path, [&](std::ostream& file) {
+    file.write(header.bytes().data(), static_cast<std::streamsize>(header.bytes().size()));
+    file.write(payload.data(), static_cast<std::streamsize>(payload.size()));
+  });
 }
 
 std::shared_ptr<const TrainedModel> loadModel(const std::string& path)

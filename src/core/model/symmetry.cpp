@@ -5,28 +5,24 @@
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/model/part.hpp"
+#include "symmetry_group.hpp"
 
 namespace bin_picking
 {
 namespace
 {
 constexpr std::size_t MAX_GROUP_SIZE = 120;
-constexpr double SAME_ANGLE = 0.00175;  // rad
-constexpr double SAME_POSITION = 1e-6;  // metres
 /// Two representatives whose rotations differ by less are equally near: the earlier one wins, whatever the rounding.
 constexpr double TRACE_TIE = 1e-9;
 
 double angleOf(const Eigen::Matrix3d& R) { return Eigen::AngleAxisd(R).angle(); }
 
-bool isSame(const Pose& a, const Pose& b)
+bool contains(const std::vector<Pose>& group, const Pose& element, const SymmetryTolerance& tolerance)
 {
-  return (a.translation() - b.translation()).norm() < SAME_POSITION &&
-         angleOf(a.linear().transpose() * b.linear()) < SAME_ANGLE;
-}
-
-bool contains(const std::vector<Pose>& group, const Pose& element)
-{
-  return std::any_of(group.begin(), group.end(), [&](const Pose& g) { return isSame(g, element); });
+  return std::any_of(group.begin(), group.end(), [&](const Pose& g) {
+    return (g.translation() - element.translation()).norm() < tolerance.position &&
+           angleOf(g.linear().transpose() * element.linear()) < tolerance.angle;
+  });
 }
 
 Pose rotationAbout(const Symmetry::Axis& axis, double angle)
@@ -43,6 +39,17 @@ double nearestAngle(const Eigen::Matrix3d& R, const Eigen::Vector3d& axis)
   const double c = (R * cross).trace();
   const double b = R.trace() - axis.dot(R * axis);
   return std::atan2(c, b);
+}
+
+/// Turns about the axis of revolution are part of the revolution, and all flips of it are one up to such a turn.
+std::vector<Pose> flipOnly(const std::vector<Pose>& rotations, const Symmetry::Axis& axis)
+{
+  std::vector<Pose> remaining = {Pose::Identity()};
+  const auto flip = std::find_if(rotations.begin(), rotations.end(),
+                                 [&](const Pose& g) { return (g.linear() * axis.direction).dot(axis.direction) < 0; });
+  if (flip != rotations.end())
+    remaining.push_back(*flip);
+  return remaining;
 }
 }  // namespace
 
@@ -62,13 +69,18 @@ std::vector<Pose> Symmetry::sampled(int steps) const
 
 std::vector<Pose> closeUnderComposition(const std::vector<Pose>& generators)
 {
+  return closeUnderComposition(generators, SymmetryTolerance());
+}
+
+std::vector<Pose> closeUnderComposition(const std::vector<Pose>& generators, const SymmetryTolerance& tolerance)
+{
   std::vector<Pose> group = {Pose::Identity()};
   // Every element of a finite group is a product of generators: extending each element by each of them finds all.
   for (std::size_t i = 0; i < group.size(); ++i)
     for (const Pose& generator : generators)
     {
       const Pose product = group[i] * generator;
-      if (contains(group, product))
+      if (contains(group, product, tolerance))
         continue;
       if (group.size() == MAX_GROUP_SIZE)
         throw ParameterError("the symmetry rotations generate more than " + std::to_string(MAX_GROUP_SIZE) +
@@ -76,6 +88,20 @@ std::vector<Pose> closeUnderComposition(const std::vector<Pose>& generators)
       group.push_back(product);
     }
   return group;
+}
+
+bool keepsAxis(const Pose& rotation, const Symmetry::Axis& axis, const SymmetryTolerance& tolerance)
+{
+  const Eigen::Vector3d moved = rotation.linear() * axis.direction;
+  const Eigen::Vector3d offset = rotation * axis.origin - axis.origin;
+  return moved.cross(axis.direction).norm() < tolerance.angle &&
+         offset.cross(axis.direction).norm() < tolerance.position;
+}
+
+Symmetry generateSymmetry(const std::vector<Pose>& rotations, const std::optional<Symmetry::Axis>& axis,
+                          const SymmetryTolerance& tolerance)
+{
+  return {axis ? flipOnly(rotations, *axis) : closeUnderComposition(rotations, tolerance), axis};
 }
 
 Pose nearestEquivalent(const Pose& T_camera_object, const Pose& reference, const Symmetry& symmetry)
