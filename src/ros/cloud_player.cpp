@@ -12,7 +12,8 @@
 #include <utility>
 
 #include "bin_picking_perception/common/error.hpp"
-#include "node_parameters.hpp"
+#include "bin_picking_perception/common/parameters.hpp"
+#include "parameter_tree.hpp"
 #include "resource_path.hpp"
 
 namespace bin_picking_ros

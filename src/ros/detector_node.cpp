@@ -6,33 +6,18 @@
 
 #include <algorithm>
 #include <chrono>
-#include <set>
 #include <sstream>
 #include <utility>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "part_loading.hpp"
 #include "resource_path.hpp"
 
 namespace bin_picking_ros
 {
 namespace
 {
-using bin_picking::PartDefinition;
 using sensor_msgs::PointCloud2ConstPtr;
-
-std::vector<PartDefinition> loadParts(const std::vector<std::string>& directories)
-{
-  std::vector<PartDefinition> parts;
-  std::set<std::string> names;
-  for (const std::string& directory : directories)
-  {
-    parts.push_back(bin_picking::loadPart(resolveResource(directory)));
-    if (!names.insert(parts.back().name).second)
-      throw bin_picking::ParameterError("Two entries of the parameter parts are named " + parts.back().name +
-                                        "; names must differ.");
-  }
-  return parts;
-}
 
 std::optional<bin_picking::Bin> loadOptionalBin(const std::string& file)
 {

@@ -12,10 +12,6 @@
 
 namespace bin_picking_ros
 {
-/// A mesh with at most about `max_triangles` triangles for display: vertices that share a cell of a grid become one. A
-/// small mesh is returned as it is.
-bin_picking::TriangleMesh simplifyForDisplay(const bin_picking::TriangleMesh& mesh, std::size_t max_triangles);
-
 /// Pictures of results for rviz. Namespaces: parts (coloured by rank), labels, rejected (gray), bin, grasp, gripper.
 class MarkerMaker
 {
@@ -38,7 +34,4 @@ private:
   std::vector<bin_picking::TriangleMesh> meshes_;
   bin_picking::Gripper gripper_;
 };
-
-/// Only the removal of all earlier markers.
-visualization_msgs::MarkerArray noMarkers(const std_msgs::Header& header);
 }  // namespace bin_picking_ros

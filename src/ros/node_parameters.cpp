@@ -4,12 +4,10 @@
 
 #include <ros/param.h>
 
-#include <cmath>
-#include <limits>
 #include <set>
-#include <sstream>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "parameter_tree.hpp"
 
 namespace bin_picking_ros
 {
@@ -20,51 +18,6 @@ using XmlRpc::XmlRpcValue;
 
 /// Parameters that ROS tools keep in the same namespace.
 const std::set<std::string> FOREIGN = {"tuning", "diagnostic_period"};
-
-std::string numberText(double value)
-{
-  std::ostringstream text;
-  text.precision(std::numeric_limits<double>::max_digits10);
-  text << value;
-  return text.str();
-}
-
-std::string scalarText(XmlRpcValue& value, const std::string& path)
-{
-  switch (value.getType())
-  {
-    case XmlRpcValue::TypeBoolean:
-      return static_cast<bool&>(value) ? "true" : "false";
-    case XmlRpcValue::TypeInt:
-      return std::to_string(static_cast<int&>(value));
-    case XmlRpcValue::TypeDouble:
-      return numberText(static_cast<double&>(value));
-    case XmlRpcValue::TypeString:
-      return static_cast<std::string&>(value);
-    default:
-      throw ParameterError("The parameter " + path +
-                           " is a list or binary data; a number, true, false or a text is wanted.");
-  }
-}
-
-std::vector<std::string> readParts(XmlRpcValue& value)
-{
-  std::vector<std::string> parts;
-  if (value.getType() == XmlRpcValue::TypeString)
-    parts.push_back(static_cast<std::string&>(value));
-  else if (value.getType() == XmlRpcValue::TypeArray)
-    for (int i = 0; i < value.size(); ++i)
-    {
-      if (value[i].getType() != XmlRpcValue::TypeString)
-        throw ParameterError("Entry " + std::to_string(i) +
-                             " of the parameter parts is not a text; part directories are wanted.");
-      parts.push_back(static_cast<std::string&>(value[i]));
-    }
-  else
-    throw ParameterError(
-        "The parameter parts is neither a text nor a list; it must name the directories of the parts.");
-  return parts;
-}
 
 void checkTogether(const NodeParameters& parameters)
 {
@@ -103,23 +56,6 @@ void NodeParameters::visit(bin_picking::ParameterVisitor& v)
   v.group("grasping", grasping);
 }
 
-std::vector<std::pair<std::string, std::string>> flatten(XmlRpcValue tree, const std::string& prefix)
-{
-  std::vector<std::pair<std::string, std::string>> leaves;
-  for (auto& [name, value] : tree)
-  {
-    const std::string path = prefix + name;
-    if (value.getType() != XmlRpcValue::TypeStruct)
-    {
-      leaves.emplace_back(path, scalarText(value, path));
-      continue;
-    }
-    const auto nested = flatten(value, path + "/");
-    leaves.insert(leaves.end(), nested.begin(), nested.end());
-  }
-  return leaves;
-}
-
 NodeParameters parseNodeParameters(XmlRpcValue tree)
 {
   NodeParameters parameters;
@@ -129,7 +65,7 @@ NodeParameters parseNodeParameters(XmlRpcValue tree)
   for (auto& [name, value] : tree)
   {
     if (name == "parts")
-      parameters.parts = readParts(value);
+      parameters.parts = readTexts(value, name, "the directories of the parts");
     else if (name == "preset")
       bin_picking::setParameter(visit, name, scalarText(value, name));
     else if (FOREIGN.count(name) == 0)

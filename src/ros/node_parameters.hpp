@@ -6,7 +6,6 @@
 #include <ros/node_handle.h>
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "bin_picking_perception/detector_parameters.hpp"
@@ -44,10 +43,6 @@ struct NodeParameters
   /// All but `parts`, which is a list.
   void visit(bin_picking::ParameterVisitor& v);
 };
-
-/// Leaves of a parameter tree as path and text. Whole numbers given as double lose the fraction ("5", not "5.0"), so
-/// that both spellings suit both types. \throws bin_picking::ParameterError for lists and binary data
-std::vector<std::pair<std::string, std::string>> flatten(XmlRpc::XmlRpcValue tree, const std::string& prefix = "");
 
 /// From the tree of a private namespace. The preset is applied first, whatever the order. Branches that belong to ROS
 /// tools (tuning, diagnostic_period) are passed over. \throws bin_picking::ParameterError unknown name (with the

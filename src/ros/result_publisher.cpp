@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "marker_primitives.hpp"
 #include "pose_conversion.hpp"
 #include "segmentation_image.hpp"
 

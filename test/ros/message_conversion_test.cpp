@@ -9,6 +9,7 @@
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/evaluation/detection_picture.hpp"
+#include "marker_primitives.hpp"
 #include "markers.hpp"
 #include "pose_conversion.hpp"
 #include "segmentation_image.hpp"
