@@ -11,9 +11,7 @@
 #include <sstream>
 
 #include "bin_picking_perception/common/error.hpp"
-#include "bin_picking_perception/model/depth_renderer.hpp"
-#include "bin_picking_perception/scene/preprocessing.hpp"
-#include "bin_picking_perception/segmentation/segmentation.hpp"
+#include "part_drawing.hpp"
 
 namespace bin_picking
 {
@@ -23,90 +21,13 @@ constexpr int MIN_WIDTH = 900;          // pixels of the picture
 constexpr float HIDDEN_DEPTH = 0.004f;  // metres behind the measured surface at which a part counts as hidden there
 constexpr float VISIBLE_OPACITY = 0.6f;
 constexpr float HIDDEN_OPACITY = 0.15f;
-constexpr double NORMAL_PIXELS = 1.5;                                 // window of the normals that shade a surface
-const cv::Vec3f NO_DATA(34, 26, 22);                                  // blue, green, red
-const Eigen::Vector3f LIGHT = Eigen::Vector3f(-0.4f, -0.5f, -0.77f);  // from the upper left, behind the camera
 
-/// Brightness of a surface under the light, [0, 1]; the light also reaches what is turned away a little.
-float shade(const Eigen::Vector3f& normal)
-{
-  return std::isnan(normal.x()) ? 0.5f : 0.3f + 0.7f * std::max(0.0f, normal.dot(LIGHT));
-}
-
-std::vector<Eigen::Vector3f> pictureNormals(const DepthGrid& grid, double depth)
-{
-  return estimateGridNormals(grid, NORMAL_PIXELS * grid.pitch(depth), Executor(1));
-}
-
-PinholeCamera scaled(const PinholeCamera& c, int scale)
-{
-  const double middle = (scale - 1) / 2.0;  // pixel 0 becomes pixels 0 ... scale - 1
-  return {c.fx * scale, c.fy * scale, c.cx * scale + middle, c.cy * scale + middle};
-}
-
-/// The measured depth as gray, near is bright, with a touch of relief.
+/// The background of the picture, enlarged.
 cv::Mat depthBackground(const DepthGrid& grid, int scale)
 {
-  const auto gray = depthToGray(grid, SegmentationParameters(), nullptr);
-  const auto middle = std::find_if(grid.z.begin(), grid.z.end(), [](float z) { return !std::isnan(z); });
-  const auto normals = pictureNormals(grid, middle == grid.z.end() ? 1.0 : static_cast<double>(*middle));
-  cv::Mat picture(grid.height, grid.width, CV_32FC3, cv::Scalar(NO_DATA[0], NO_DATA[1], NO_DATA[2]));
-  for (std::size_t i = 0; i < gray.size(); ++i)
-  {
-    if (gray[i] == 0)
-      continue;
-    const float level = (0.25f + 0.75f * static_cast<float>(gray[i]) / 255) * (0.35f + 0.65f * shade(normals[i])) * 230;
-    picture.at<cv::Vec3f>(static_cast<int>(i) / grid.width, static_cast<int>(i) % grid.width) = {level, level, level};
-  }
   cv::Mat large;
-  cv::resize(picture, large, {}, scale, scale, cv::INTER_LINEAR);
+  cv::resize(shadedDepth(grid), large, {}, scale, scale, cv::INTER_LINEAR);
   return large;
-}
-
-/// A part drawn alone, in the part of the picture that it covers.
-struct Drawing
-{
-  cv::Rect window;
-  DepthGrid grid;
-  std::vector<Eigen::Vector3f> normals;
-};
-
-cv::Rect coveredWindow(const std::vector<Eigen::Vector3f>& points, const Pose& T_camera_object,
-                       const PinholeCamera& camera, const cv::Size& size)
-{
-  Eigen::Vector2d low(size.width, size.height);
-  Eigen::Vector2d high(-1, -1);
-  for (const auto& point : points)
-  {
-    const Eigen::Vector3d p = T_camera_object * point.cast<double>();
-    if (p.z() <= 0)
-      continue;
-    low = low.cwiseMin(camera.project(p));
-    high = high.cwiseMax(camera.project(p));
-  }
-  const cv::Point corner(static_cast<int>(std::max(0.0, low.x() - 3)), static_cast<int>(std::max(0.0, low.y() - 3)));
-  const cv::Point opposite(static_cast<int>(std::min(size.width - 1.0, high.x() + 3)),
-                           static_cast<int>(std::min(size.height - 1.0, high.y() + 3)));
-  return opposite.x < corner.x || opposite.y < corner.y ? cv::Rect() : cv::Rect(corner, opposite + cv::Point(1, 1));
-}
-
-Drawing drawPart(const TrainedModel& model, const Pose& T_camera_object, const PinholeCamera& camera,
-                 const cv::Size& size)
-{
-  Drawing drawing;
-  const bool has_mesh = !model.mesh.empty();
-  drawing.window = coveredWindow(has_mesh ? model.mesh.vertices : model.surface.points, T_camera_object, camera, size);
-  if (drawing.window.empty())
-    return drawing;
-  DepthRenderer renderer(drawing.window.width, drawing.window.height,
-                         {camera.fx, camera.fy, camera.cx - drawing.window.x, camera.cy - drawing.window.y});
-  if (has_mesh)
-    renderer.draw(model.mesh, T_camera_object, 0);
-  else
-    renderer.draw(model.surface, T_camera_object, model.parameters.surface_spacing, 0);
-  drawing.grid = renderer.grid();
-  drawing.normals = pictureNormals(drawing.grid, std::max(1e-3, T_camera_object.translation().z()));
-  return drawing;
 }
 
 cv::Scalar toScalar(const Eigen::Vector3f& rgb, float brightness)
@@ -121,18 +42,19 @@ public:
   Painter(const DepthGrid& grid, int scale)
       : grid_(grid),
         scale_(scale),
-        camera_(scaled(grid.camera, scale)),
+        camera_(enlarged(grid.camera, scale)),
         picture_(depthBackground(grid, scale)),
         nearest_(picture_.size(), CV_32F, cv::Scalar(std::numeric_limits<float>::infinity()))
   {}
 
   void paint(const std::vector<Detection>& detections, const std::vector<std::shared_ptr<const TrainedModel>>& models)
   {
-    std::vector<Drawing> drawings;
+    std::vector<PartDrawing> drawings;
     for (const auto& detection : detections)
     {
-      drawings.push_back(
-          drawPart(*models.at(detection.model_index), detection.T_camera_object, camera_, picture_.size()));
+      const TrainedModel& model = *models.at(detection.model_index);
+      drawings.push_back(drawPart(model.mesh, model.surface, model.parameters.surface_spacing,
+                                  detection.T_camera_object, camera_, picture_.size()));
       markNearest(drawings.back());
     }
     for (std::size_t k = drawings.size(); k-- > 0;)  // the best one last, on top
@@ -147,17 +69,7 @@ public:
   const cv::Mat& picture() const { return picture_; }
 
 private:
-  /// Calls paint(point in the picture, index into the drawing) for every pixel that the part covers.
-  template <typename Function>
-  static void forEachPixel(const Drawing& drawing, const Function& paint)
-  {
-    for (int v = 0; v < drawing.window.height; ++v)
-      for (int u = 0; u < drawing.window.width; ++u)
-        if (const int i = drawing.grid.index(u, v); drawing.grid.valid(i))
-          paint(cv::Point(u, v) + drawing.window.tl(), static_cast<std::size_t>(i));
-  }
-
-  void markNearest(const Drawing& drawing)
+  void markNearest(const PartDrawing& drawing)
   {
     forEachPixel(drawing, [&](const cv::Point& at, std::size_t i) {
       nearest_.at<float>(at) = std::min(nearest_.at<float>(at), drawing.grid.z[i]);
@@ -171,7 +83,7 @@ private:
     return depth > measured + HIDDEN_DEPTH || depth > nearest_.at<float>(at) + HIDDEN_DEPTH / 4;
   }
 
-  void blend(const Drawing& drawing, const Eigen::Vector3f& rgb)
+  void blend(const PartDrawing& drawing, const Eigen::Vector3f& rgb)
   {
     forEachPixel(drawing, [&](const cv::Point& at, std::size_t i) {
       const float opacity = isHidden(at, drawing.grid.z[i]) ? HIDDEN_OPACITY : VISIBLE_OPACITY;
@@ -182,19 +94,12 @@ private:
     });
   }
 
-  void outline(const Drawing& drawing, const Eigen::Vector3f& rgb)
+  void outline(const PartDrawing& drawing, const Eigen::Vector3f& rgb)
   {
-    if (drawing.window.empty())
-      return;
-    cv::Mat mask = cv::Mat::zeros(drawing.window.size(), CV_8U);
-    forEachPixel(drawing,
-                 [&](const cv::Point& at, std::size_t) { mask.at<std::uint8_t>(at - drawing.window.tl()) = 255; });
-    std::vector<std::vector<cv::Point>> contours;
-    cv::findContours(mask, contours, cv::RETR_CCOMP, cv::CHAIN_APPROX_NONE, drawing.window.tl());
-    cv::drawContours(picture_, contours, -1, toScalar(rgb, 1.0f), 1, cv::LINE_AA);
+    cv::drawContours(picture_, contours(drawing), -1, toScalar(rgb, 1.0f), 1, cv::LINE_AA);
   }
 
-  void writeLabel(const Drawing& drawing, std::size_t rank, double score)
+  void writeLabel(const PartDrawing& drawing, std::size_t rank, double score)
   {
     cv::Point2d sum(0, 0);
     double count = 0;
