@@ -8,7 +8,7 @@ namespace bin_picking::simulation
 {
 namespace
 {
-constexpr double RIGHT_ANGLE = 1.5707963;
+constexpr double RIGHT_ANGLE = 1.5708;  // as it is written back from text
 
 /// Active stereo at short range, 848 x 480, as the RealSense D435: docs/simulation.md.
 SensorParameters stereoDefaults()
