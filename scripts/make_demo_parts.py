@@ -3,18 +3,22 @@
 # SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 """Writes the meshes of the demo parts: config/parts/<part>/<part>.stl (binary STL, millimetres).
 
-Both parts are lofts: a row of closed rings with the same number of vertices, each linked to the next. Neighbouring
-lofts share the exact vertices of their seams, so the surface is watertight by construction; it is checked before it is
-written.
+Parts with a <part>.scad beside the mesh are drawn by OpenSCAD (apt-get install openscad). The others are lofts, made here:
+a row of closed rings with the same number of vertices, each linked to the next. Neighbouring lofts share the exact vertices
+of their seams. Every surface is checked before it is written: closed, turned outwards, no flat triangles.
 
     scripts/make_demo_parts.py [--output config/parts]
 """
 
 import argparse
 import pathlib
-import struct
+import shutil
+import subprocess
+import tempfile
 
 import numpy as np
+
+import part_mesh
 
 SEGMENTS = 96  # of a full turn: facets turn by 3.75 degrees, a 15 mm radius is met within 0.01 mm
 
@@ -147,63 +151,83 @@ def upright_column():
     return loft([np.column_stack([xy, np.full(len(t), float(z))]) for xy, z in outline], closed=True)
 
 
-# Checks and output --------------------------------------------------------------------------------------------------
+# Cast handle --------------------------------------------------------------------------------------------------------
+# A lever without a plane or a cylinder: egg-shaped sections that swell, shrink and turn along a spine that bends in two
+# directions. No symmetry.
 
-def weld(triangles):
-    """Vertices and index triples; triangles that collapsed to a line are dropped."""
-    flat = np.round(triangles.reshape(-1, 3), 4) + 0.0
-    vertices, index = np.unique(flat, axis=0, return_inverse=True)
-    index = index.reshape(-1, 3)
-    keep = (index[:, 0] != index[:, 1]) & (index[:, 1] != index[:, 2]) & (index[:, 2] != index[:, 0])
-    return vertices, index[keep]
-
-
-def volume(vertices, faces):
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    return np.einsum('ij,ij->i', a, np.cross(b, c)).sum() / 6
+HANDLE_LENGTH, HANDLE_RINGS, HANDLE_SEGMENTS = 112.0, 60, 64
+# At a share of the length: half width and half height of the section, its turn about the spine in degrees.
+HANDLE_SECTIONS = ((0.00, 17.0, 13.0, 0), (0.15, 17.5, 13.5, 5), (0.38, 9.5, 8.0, 25), (0.62, 12.0, 10.0, 40),
+                   (0.82, 14.5, 9.5, 55), (1.00, 11.0, 8.5, 65))
+HANDLE_EGG = 0.16                   # by how much a section is wider on one side
+HANDLE_CAPS = (13.0, 8.0)           # length over which the ends round off
 
 
-def check(name, vertices, faces):
-    """Every directed edge once and its opposite once: closed, orientable, consistently turned; volume > 0: outward."""
-    directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    keys = directed[:, 0] * len(vertices) + directed[:, 1]
-    opposite = directed[:, 1] * len(vertices) + directed[:, 0]
-    if len(np.unique(keys)) != len(keys) or not np.array_equal(np.sort(keys), np.sort(opposite)):
-        raise SystemExit(f'{name}: the surface is not closed')
-    if volume(vertices, faces) <= 0:
-        raise SystemExit(f'{name}: the surface is turned inside out')
+def smooth_row(shares, values, at):
+    """Through the values with continuous slope: cubic pieces whose slope is that between the neighbours."""
+    slopes = np.gradient(values, shares)
+    i = np.clip(np.searchsorted(shares, at, side='right') - 1, 0, len(shares) - 2)
+    span = shares[i + 1] - shares[i]
+    u = (at - shares[i]) / span
+    return ((2 * u ** 3 - 3 * u ** 2 + 1) * values[i] + (u ** 3 - 2 * u ** 2 + u) * span * slopes[i] +
+            (3 * u ** 2 - 2 * u ** 3) * values[i + 1] + (u ** 3 - u ** 2) * span * slopes[i + 1])
 
 
-def symmetry_error(vertices, rotation):
-    """Largest distance from a rotated vertex to the nearest vertex, mm. Vertices of both parts lie symmetric if the
-    surface does."""
-    moved = vertices @ rotation.T
-    return max(np.sqrt(((vertices - p) ** 2).sum(axis=1).min()) for p in moved)
+def handle_spine(share):
+    """Points on the spine and unit tangents."""
+    x = share * HANDLE_LENGTH
+    point = np.stack([x, 13 * np.sin(np.pi * share * 1.3), 24 * share ** 2 * (1.6 - share)], axis=1)
+    slope = np.stack([np.full_like(share, HANDLE_LENGTH), 13 * 1.3 * np.pi * np.cos(np.pi * share * 1.3),
+                      24 * (3.2 * share - 3 * share ** 2)], axis=1)
+    return point, slope / np.linalg.norm(slope, axis=1, keepdims=True)
 
 
-def write_stl(path, name, vertices, faces):
-    corners = vertices[faces].astype(np.float32)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-20)
-    record = np.zeros(len(faces), dtype=[('normal', '<f4', 3), ('corners', '<f4', (3, 3)), ('attribute', '<u2')])
-    record['normal'], record['corners'] = normals, corners
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(f'{name}, millimetres'.encode().ljust(80, b' ') + struct.pack('<I', len(faces)) + record.tobytes())
+def cast_handle():
+    share = (1 - np.cos(np.linspace(0, np.pi, HANDLE_RINGS + 1))) / 2  # denser where the ends round off
+    table = np.array(HANDLE_SECTIONS)
+    half_width, half_height, turn = (smooth_row(table[:, 0], table[:, k], share) for k in (1, 2, 3))
+    from_end = np.minimum(share * HANDLE_LENGTH / HANDLE_CAPS[0], (1 - share) * HANDLE_LENGTH / HANDLE_CAPS[1])
+    cap = np.sqrt(1 - (1 - np.minimum(from_end, 1)) ** 2)
+    t = np.arange(HANDLE_SEGMENTS) * 2 * np.pi / HANDLE_SEGMENTS
+    across = (half_width * cap)[:, None] * np.cos(t)
+    upward = (half_height * cap)[:, None] * np.sin(t) * (1 + HANDLE_EGG * np.cos(t))
+    c, s = np.cos(np.radians(turn))[:, None], np.sin(np.radians(turn))[:, None]
+    point, tangent = handle_spine(share)
+    side = np.cross([0.0, 0.0, 1.0], tangent)
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    up = np.cross(tangent, side)
+    rings = point[:, None] + (c * across - s * upward)[..., None] * side[:, None] + \
+        (s * across + c * upward)[..., None] * up[:, None]
+    return loft(rings)
+
+
+# Parts drawn in OpenSCAD --------------------------------------------------------------------------------------------
+
+def from_scad(source):
+    if shutil.which('openscad') is None:
+        raise SystemExit(f'openscad is missing, which draws {source}: apt-get install openscad')
+    with tempfile.TemporaryDirectory() as folder:
+        mesh = pathlib.Path(folder) / 'part.stl'
+        result = subprocess.run(['openscad', '-o', mesh, source], capture_output=True, text=True)
+        if result.returncode != 0 or 'WARNING' in result.stderr:
+            raise SystemExit(f'openscad cannot draw {source}:\n{result.stderr}')
+        return part_mesh.read_ascii_stl(mesh.read_text())
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    default = pathlib.Path(__file__).resolve().parent.parent / 'config' / 'parts'
-    parser.add_argument('--output', type=pathlib.Path, default=default, help='folder of the parts')
+    folder = pathlib.Path(__file__).resolve().parent.parent / 'config' / 'parts'
+    parser.add_argument('--output', type=pathlib.Path, default=folder, help='folder of the parts')
     arguments = parser.parse_args()
-    for name, make in (('three_way_tube', three_way_tube), ('upright_column', upright_column)):
-        vertices, faces = weld(make())
-        check(name, vertices, faces)
+    makers = {make.__name__: make for make in (three_way_tube, upright_column, cast_handle)}
+    makers.update({source.stem: lambda source=source: from_scad(source) for source in sorted(folder.glob('*/*.scad'))})
+    for name, make in makers.items():
+        vertices, faces = part_mesh.weld(make())
+        part_mesh.check(name, vertices, faces)
         size = vertices.max(axis=0) - vertices.min(axis=0)
-        half_turn = symmetry_error(vertices, np.diag([-1.0, -1.0, 1.0]))
         print(f'{name}: {len(faces)} triangles, size {size[0]:.3f} x {size[1]:.3f} x {size[2]:.3f} mm, '
-              f'volume {volume(vertices, faces) / 1000:.2f} cm^3, half turn about z misses by {half_turn:.3f} mm')
-        write_stl(arguments.output / name / f'{name}.stl', name, vertices, faces)
+              f'volume {part_mesh.volume(vertices, faces) / 1000:.2f} cm^3')
+        part_mesh.write_stl(arguments.output / name / f'{name}.stl', name, vertices, faces)
 
 
 if __name__ == '__main__':

@@ -230,6 +230,23 @@ TEST(PartFile, expectedSizeIsCompared)
   EXPECT_THROW(checkExpectedSize(part, Vector3d(1, 0.2, 0.3)), FileError);
 }
 
+TEST(PartFile, symmetryMayStandInAModelsInfo)
+{
+  const TemporaryFolder folder;
+  folder.write("models_info.json",
+               R"({"3": {"diameter": 90, "min_x": 0, "min_y": 0, "min_z": 0, "size_x": 50, "size_y": 50,
+    "size_z": 50, "symmetries_discrete": [[-1, 0, 0, 4, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]]}})");
+  const std::string head = "format: 1\nname: tee\nmesh: {file: tee.stl, unit: mm}\nsymmetry:\n";
+  const auto load = [&](const std::string& symmetry) { return loadPart(folder.write("part.yaml", head + symmetry)); };
+  const PartDefinition part = load("  models_info: {file: models_info.json, id: 3}\n");
+  ASSERT_EQ(part.symmetry.discrete.size(), 2u);
+  EXPECT_LT((part.symmetry.discrete[1] * Vector3d::Zero() - Vector3d(0.004, 0, 0)).norm(), 1e-12);
+  const auto error = [&](const std::string& symmetry) { return messageOf<FileError>([&] { load(symmetry); }); };
+  expectWords(error("  models_info: {file: models_info.json, id: 4}\n"), {"part.yaml:5", "no model 4", "[3, 3]"});
+  expectWords(error("  models_info: {file: missing.json, id: 3}\n"), {folder.path("missing.json")});
+  expectWords(error("  models_info: {file: models_info.json, id: 3}\n  discrete: []\n"), {"part.yaml:5", "twice"});
+}
+
 TEST(PartFile, documentationAndDemoPartsAreReadable)
 {
   const std::string parts = std::string(BIN_PICKING_SOURCE_DIR) + "/config/parts/";

@@ -77,7 +77,7 @@ PartDefinition loadPart(const std::string& path)
   if (yaml.has("expected_size"))
     part.expected_size = readExpectedSize(yaml);
   if (yaml.has("symmetry"))
-    part.symmetry = readSymmetry(yaml.map("symmetry"));
+    part.symmetry = readSymmetry(yaml.map("symmetry"), part.directory);
   if (yaml.has("training"))
     part.training_yaml = readTraining(yaml, file.string());
   if (yaml.has("grasps"))

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "../common/yaml_reader.hpp"
@@ -9,8 +10,8 @@
 
 namespace bin_picking
 {
-/// The `symmetry:` map of part.yaml. \throws FileError
-Symmetry readSymmetry(const YamlMap& yaml);
+/// The `symmetry:` map of part.yaml. \param directory to which its files are relative \throws FileError
+Symmetry readSymmetry(const YamlMap& yaml, const std::string& directory);
 
 /// The `grasps:` list of part.yaml. \throws FileError
 std::vector<GraspDefinition> readGrasps(const YamlMap& part);

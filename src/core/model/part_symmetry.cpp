@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <cmath>
+#include <filesystem>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/model/models_info.hpp"
 #include "part_file.hpp"
 #include "symmetry_group.hpp"
 
@@ -31,11 +33,30 @@ Pose readRotation(const YamlMap& yaml)
               Eigen::Translation3d(-axis.origin));
 }
 
+/// From a file of the BOP benchmark that describes the same mesh.
+Symmetry readFromModelsInfo(const YamlMap& yaml, const std::filesystem::path& directory)
+{
+  yaml.allowKeys({"file", "id"});
+  const std::string file = (directory / yaml.text("file")).string();
+  const int id = yaml.integer("id");
+  const auto models = loadModelsInfo(file);
+  const auto found = models.find(id);
+  if (found == models.end())
+    yaml.fail("id", "'" + file + "' has no model " + std::to_string(id) + "; its ids lie in [" +
+                        std::to_string(models.begin()->first) + ", " + std::to_string(models.rbegin()->first) + "]");
+  return found->second.symmetry;
+}
 }  // namespace
 
-Symmetry readSymmetry(const YamlMap& yaml)
+Symmetry readSymmetry(const YamlMap& yaml, const std::string& directory)
 {
-  yaml.allowKeys({"discrete", "continuous"});
+  yaml.allowKeys({"discrete", "continuous", "models_info"});
+  if (yaml.has("models_info"))
+  {
+    if (yaml.has("discrete") || yaml.has("continuous"))
+      yaml.fail("models_info", "the symmetry is given twice; keep 'models_info', or 'discrete' and 'continuous'");
+    return readFromModelsInfo(yaml.map("models_info"), directory);
+  }
   std::optional<Symmetry::Axis> axis;
   if (yaml.has("continuous"))
   {
