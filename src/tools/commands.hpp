@@ -16,6 +16,7 @@ struct Command
 Command trainCommand();
 Command detectCommand();
 Command matchCommand();
+Command evaluateCommand();
 Command demoSceneCommand();
 Command parametersCommand();
 }  // namespace bin_picking::tools

@@ -23,7 +23,7 @@ constexpr int WRONG_USAGE = 2;
 
 std::vector<Command> commands()
 {
-  return {trainCommand(), detectCommand(), matchCommand(), demoSceneCommand(), parametersCommand()};
+  return {trainCommand(), detectCommand(), matchCommand(), evaluateCommand(), demoSceneCommand(), parametersCommand()};
 }
 
 void printOverview(std::ostream& out)

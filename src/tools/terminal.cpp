@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
@@ -52,10 +53,22 @@ std::string readText(const std::string& path)
 
 void writeText(const std::string& path, const std::string& text)
 {
-  std::ofstream file(path, std::ios::binary);
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const bool is_pipe = fs::exists(path, error) && !fs::is_regular_file(path, error);  // or a device: not replaceable
+  // Renaming replaces an old file at once; what goes wrong before leaves it as it was.
+  const std::string written = is_pipe ? path : path + "." + std::to_string(getpid()) + ".tmp";
+  std::ofstream file(written, std::ios::binary);
   file << text;
   file.close();
-  if (!file)
-    throw FileError("cannot write '" + path + "'; check that the folder exists and has room");
+  error.clear();
+  if (file && !is_pipe)
+    fs::rename(written, path, error);
+  if (file && !error)
+    return;
+  std::error_code ignored;
+  if (!is_pipe)
+    fs::remove(written, ignored);
+  throw FileError("cannot write '" + path + "'; check that the folder exists and has room");
 }
 }  // namespace bin_picking::tools

@@ -42,6 +42,6 @@ std::string fixed(double value, int digits);
 /// The whole text of a file. \throws FileError
 std::string readText(const std::string& path);
 
-/// \throws FileError
+/// The whole file or nothing of it. \throws FileError
 void writeText(const std::string& path, const std::string& text);
 }  // namespace bin_picking::tools

@@ -76,7 +76,7 @@ TEST(Judgement, PerfectPosesAreRightWithoutError)
     EXPECT_NEAR(e.max_distance, 0, 1e-9);
     EXPECT_NEAR(e.mean_distance, 0, 1e-6);  // searched in single precision
   }
-  EXPECT_EQ(verdictText(judged, 0), "right: 0.0 mm, 0.0 deg");
+  EXPECT_EQ(verdictText(judged, 0), "right: 0.00 mm, 0.00 deg");
 }
 
 TEST(Judgement, AShiftIsMeasuredAndJudgedByTheDiameter)

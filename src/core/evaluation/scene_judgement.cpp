@@ -155,10 +155,11 @@ void passVerdicts(JudgedScene& judged, const Eigen::MatrixXd& errors, const std:
   }
 }
 
-std::string number(double value)
+std::string errorText(const PoseError& error, int digits)
 {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f", value);
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f mm, %.*f deg", digits, error.translation * 1000, digits,
+                error.rotation * 180 / M_PI);
   return text.data();
 }
 }  // namespace
@@ -231,18 +232,16 @@ JudgedScene judgeScene(const EvaluationScene& scene, const std::vector<PoseEstim
 std::string verdictText(const JudgedScene& scene, std::size_t estimate)
 {
   const JudgedEstimate& judged = scene.estimates.at(estimate);
-  const std::string error =
-      number(judged.error.translation * 1000) + " mm, " + number(judged.error.rotation * 180 / M_PI) + " deg";
   switch (judged.verdict)
   {
     case Verdict::Right:
-      return "right: " + error;
+      return "right: " + errorText(judged.error, 2);
     case Verdict::Hidden:
-      return "right, but hidden: " + error;
+      return "right, but hidden: " + errorText(judged.error, 2);
     case Verdict::Duplicate:
       return "duplicate of #" + std::to_string(scene.found_by.at(*judged.instance).value() + 1);
     default:
-      return judged.instance ? "off by " + error : "no part there";
+      return judged.instance ? "off by " + errorText(judged.error, 1) : "no part there";
   }
 }
 }  // namespace bin_picking
