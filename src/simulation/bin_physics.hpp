@@ -17,10 +17,10 @@ struct PhysicsParameters
 {
   double friction = 0.35;
   double restitution = 0.05;
-  double drop_height = 0.05;
-  double drop_interval = 0.12;
-  double time_step = 0.004;
-  double max_settling_time = 8;
+  double drop_height = 0.03;
+  double drop_interval = 0.1;
+  double time_step = 0.005;
+  double max_settling_time = 3;
 
   void visit(ParameterVisitor& v);
 };
@@ -50,15 +50,17 @@ public:
   BinPhysics& operator=(BinPhysics&&) noexcept;
 
   /// Drops parts one after the other, at random places and attitudes, just above what lies there already, and waits
-  /// until all rest. Parts that end outside are dropped once more.
+  /// until all rest. A part that ends outside is dropped again, a few times.
   /// \param shape_indices what to drop, in this order
-  /// \throws ParameterError the bin is too full: parts remain above the rim or outside
+  /// \throws ParameterError the bin is too full: parts end outside again and again, or lie above the rim
   void drop(const std::vector<int>& shape_indices, std::uint32_t seed, const Progress& progress = {});
 
   /// Takes a part away and waits until the others rest. False: there is no such part.
   bool remove(int id);
   /// Lifts a part out and lets it fall back in at a random place and attitude; waits until all rest. False: as above.
   bool dropAgain(int id, std::uint32_t seed);
+  /// Takes all parts away.
+  void clear();
 
   /// In the order of dropping.
   std::vector<Body> bodies() const;

@@ -6,12 +6,10 @@
 #include <vector>
 
 #include "bin_picking_perception/model/mesh.hpp"
+#include "convex_pieces.hpp"
 
 namespace bin_picking::simulation
 {
-/// Corners of a convex body, metres, part frame.
-using ConvexPiece = std::vector<Eigen::Vector3f>;
-
 /// What the physics needs of a part.
 struct RigidBodyShape
 {

@@ -109,6 +109,14 @@ VisitFunction visitor(Parameters& parameters)
   return [&parameters](ParameterVisitor& v) { parameters.visit(v); };
 }
 
+/// Throws what setParameter would throw for a value that is out of its range.
+template <typename Parameters>
+void checkRanges(Parameters parameters)
+{
+  for (const ParameterEntry& entry : listParameters(visitor(parameters)))
+    setParameter(visitor(parameters), entry.path, entry.value);
+}
+
 /// A number with an optional unit suffix, in SI: "3mm" -> 0.003, "12deg" -> 0.2094, "0.03/mm" -> 30.
 /// \param unit SI unit that the text must fit ("m", "rad", "1/m", "s", "")
 double parseQuantity(const std::string& text, const std::string& unit);
