@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "take_part_answer.hpp"
+
+#include <sstream>
+
+namespace bin_picking_ros
+{
+namespace
+{
+std::string leftText(std::size_t num_left)
+{
+  return std::to_string(num_left) + (num_left == 1 ? " part is" : " parts are") + " left.";
+}
+
+std::int8_t toCode(PickOutcome::Kind kind)
+{
+  switch (kind)
+  {
+    case PickOutcome::Kind::Taken:
+      return TakePartResponse::TAKEN;
+    case PickOutcome::Kind::Missed:
+      return TakePartResponse::MISSED;
+    case PickOutcome::Kind::DroppedBack:
+      return TakePartResponse::DROPPED_BACK;
+    case PickOutcome::Kind::NoSuchPart:
+      break;
+  }
+  return TakePartResponse::NO_SUCH_PART;
+}
+
+std::string describe(PickOutcome::Kind kind, const std::string& part)
+{
+  switch (kind)
+  {
+    case PickOutcome::Kind::Taken:
+      return part + " was taken; ";
+    case PickOutcome::Kind::Missed:
+      return "The grip missed " + part + "; ";
+    case PickOutcome::Kind::DroppedBack:
+      return part + " fell back into the bin; ";
+    case PickOutcome::Kind::NoSuchPart:
+      break;
+  }
+  return "There is no " + part + "; look at the newest ~truth; ";
+}
+}  // namespace
+
+TakePartResponse toAnswer(const PickOutcome& outcome, int id)
+{
+  TakePartResponse answer;
+  answer.outcome = toCode(outcome.kind);
+  answer.id = outcome.id;
+  answer.part = outcome.part;
+  answer.num_left = static_cast<std::uint32_t>(outcome.num_left);
+  const std::string part =
+      outcome.part.empty() ? "part " + std::to_string(id) : "Part " + std::to_string(id) + " (" + outcome.part + ")";
+  answer.message = describe(outcome.kind, part) + leftText(outcome.num_left);
+  return answer;
+}
+
+TakePartResponse nothingThere(const bin_picking_perception::TakePart::Request& request, std::size_t num_left)
+{
+  TakePartResponse answer;
+  answer.outcome = TakePartResponse::NO_SUCH_PART;
+  answer.id = -1;
+  answer.num_left = static_cast<std::uint32_t>(num_left);
+  const auto& p = request.pose.pose.position;
+  std::ostringstream text;
+  text.precision(4);
+  text << "No " << (request.part.empty() ? "part" : request.part) << " lies at [" << p.x << ", " << p.y << ", " << p.z
+       << "] m in " << request.pose.header.frame_id << "; ";
+  answer.message = text.str() + leftText(num_left);
+  return answer;
+}
+
+TakePartResponse failedAnswer(const ReturnCode& code)
+{
+  TakePartResponse answer;
+  answer.id = -1;
+  answer.num_left = 0;
+  answer.message = code.message;
+  switch (code.value)
+  {
+    case ReturnCode::NOT_READY:
+      answer.outcome = TakePartResponse::NOT_READY;
+      break;
+    case ReturnCode::INTERNAL:
+      answer.outcome = TakePartResponse::FAILED;
+      break;
+    default:  // the request's pose, frame or part
+      answer.outcome = TakePartResponse::INVALID_REQUEST;
+  }
+  return answer;
+}
+}  // namespace bin_picking_ros
