@@ -47,6 +47,19 @@ DatasetSelection selection(const Arguments& arguments)
           parseInteger(arguments.value("--max-scenes", "0"), "--max-scenes", 0, 1 << 30)};
 }
 
+/// Complains about a report that cannot be written before the detector has worked for it.
+void requireFolders(const Arguments& arguments)
+{
+  for (const char* option : {"--json", "--csv", "--html"})
+  {
+    const fs::path folder = fs::path(arguments.value(option)).parent_path();
+    std::error_code ignored;
+    if (!folder.empty() && !fs::is_directory(folder, ignored))
+      throw FileError("cannot write '" + arguments.value(option) + "': the folder '" + folder.string() +
+                      "' does not exist; make it first");
+  }
+}
+
 void requireFittingOptions(const Arguments& arguments)
 {
   if (!arguments.has("--results"))
@@ -214,6 +227,7 @@ std::string csvText(const EvaluationDataset& dataset, const EvaluationReport& re
 void evaluate(const Arguments& arguments)
 {
   requireFittingOptions(arguments);
+  requireFolders(arguments);
   evaluationParameters(arguments);
   EvaluationDataset dataset = openDataset(arguments.value("--dataset"), selection(arguments));
   const EvaluationReport report = evaluateScenes(arguments, dataset);

@@ -114,7 +114,7 @@ TEST(Usage, HelpAndVersionSucceed)
   const Outcome version = run("--version");
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_EQ(version.text, std::string("bin_picking ") + BIN_PICKING_VERSION + "\n");
-  for (const std::string command : {"train", "detect", "match", "demo-scene", "parameters"})
+  for (const std::string command : {"train", "detect", "match", "evaluate", "demo-scene", "parameters"})
   {
     const Outcome help = run(command + " --help");
     EXPECT_EQ(help.exit_code, 0);

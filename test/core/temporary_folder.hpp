@@ -21,8 +21,9 @@ public:
   TemporaryFolder()
   {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    const auto* suite = testing::UnitTest::GetInstance()->current_test_suite();  // while it is set up there is no test
     path_ = std::filesystem::temp_directory_path() /
-            (std::string("bin_picking_") + test->name() + "_" + std::to_string(getpid()));
+            (std::string("bin_picking_") + (test ? test->name() : suite->name()) + "_" + std::to_string(getpid()));
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+//
+// Runs `bin_picking evaluate` as a user does, on a small data set that is rendered here.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+
+#include "core/dataset_folders.hpp"
+#include "core/tee_scene.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+using namespace test;
+
+const std::string TUBE = std::string(BIN_PICKING_SOURCE_DIR) + "/config/parts/three_way_tube";
+
+struct Outcome
+{
+  int exit_code = -1;
+  std::string text;  // both streams
+};
+
+Outcome run(const std::string& arguments)
+{
+  Outcome result;
+  FILE* pipe = popen((std::string(BIN_PICKING_EXECUTABLE) + " evaluate " + arguments + " 2>&1").c_str(), "r");
+  if (!pipe)
+    return result;
+  std::array<char, 4096> buffer;
+  for (std::size_t read = 0; (read = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+    result.text.append(buffer.data(), read);
+  const int status = pclose(pipe);
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return result;
+}
+
+void expectFailure(const std::string& arguments, int exit_code, const std::vector<std::string>& said)
+{
+  const Outcome result = run(arguments);
+  EXPECT_EQ(result.exit_code, exit_code) << arguments << "\n" << result.text;
+  expectWords(result.text, said);
+}
+
+/// Two tubes that lie free on a table, and an empty table; the model is trained by the first run and kept.
+class EvaluateCommand : public ::testing::Test
+{
+protected:
+  static void SetUpTestSuite()
+  {
+    folder_ = std::make_unique<OwnFolder>();
+    for (const char* name : {"parts", "full", "empty"})
+      std::filesystem::remove_all(folder_->path(name));
+    std::filesystem::create_directories(folder_->path("bins/parts"));
+    std::filesystem::copy(TUBE, folder_->path("bins/parts/three_way_tube"));
+    writeScene("tubes", posesApart(2, 3));
+    writeScene("table", {});
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static void writeScene(const std::string& name, const std::vector<Pose>& poses)
+  {
+    Json truth = truthOf({"three_way_tube"}, {});
+    for (const Pose& T : poses)
+      truth["instances"].push_back(
+          {{"part", "three_way_tube"}, {"T_camera_object", rowsOf(T)}, {"visible_fraction", 1}});
+    folder_->writeFile("bins/" + name + "/truth.json", truth.dump());
+    folder_->writeFile("bins/" + name + "/bin.yaml",
+                       "pose: {position: [0, 0, 0.66], orientation: [1, 0, 0, 0]}\ninner_size: [0.4, 0.3, 0.15]\n");
+    saveGrid(renderTees(poses, 0.0002), file("bins/" + name + "/scene.pcd"));
+  }
+
+  static std::string file(const std::string& name) { return folder_->path(name); }
+  static std::string onBins(const std::string& options)
+  {
+    return "--dataset " + file("bins") + " --cache " + file("cache") + " " + options;
+  }
+  static Json readJson(const std::string& name) { return Json::parse(readFile(file(name))); }
+
+  static std::unique_ptr<OwnFolder> folder_;
+};
+
+std::unique_ptr<OwnFolder> EvaluateCommand::folder_;
+
+TEST_F(EvaluateCommand, FindsTheTubesAndReportsInEveryForm)
+{
+  const Outcome outcome = run(onBins("--repeat 2 --json " + file("report.json") + " --csv " + file("found.csv") +
+                                     " --html " + file("report.html")));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.text;
+  expectWords(outcome.text, {"2 scenes, 2 parts in them", "three_way_tube", "95 % interval", "voting"});
+
+  const Json json = readJson("report.json");
+  EXPECT_EQ(json.at("format"), 1);
+  EXPECT_EQ(json.at("object_ids").at("three_way_tube"), 1);
+  const Json& all = json.at("all");
+  EXPECT_EQ(all.at("right"), 2);  // free tubes, seen from above with 0.2 mm of noise
+  EXPECT_EQ(all.at("recall").at(0).at("hits"), 2);
+  EXPECT_EQ(all.at("precision_of_first").at(0).at("total"), 1) << "the empty table has nothing to pick";
+  EXPECT_EQ(all.at("empty_scenes_with_false").at("total"), 1);
+  EXPECT_LT(all.at("translation_mm").at("median").get<double>(), 1);
+  EXPECT_EQ(json.at("timing_ms").at("total").at("count"), 4);  // two runs of two scenes
+  ASSERT_EQ(json.at("scenes").size(), 2u);
+  EXPECT_EQ(json.at("scenes").at(1).at("name"), "tubes");
+  EXPECT_EQ(json.at("scenes").at(1).at("estimates").at(0).at("verdict"), "right");
+
+  const std::string page = readFile(file("report.html"));
+  expectWords(page, {"data:image/jpeg;base64,/9j/", "mark-right", "<b>tubes"});
+  EXPECT_EQ(page.find("http"), std::string::npos);
+}
+
+TEST_F(EvaluateCommand, WrittenResultsAreJudgedTheSame)
+{
+  ASSERT_EQ(run(onBins("--json " + file("ours.json") + " --csv " + file("ours.csv"))).exit_code, 0);
+  const Outcome again =
+      run("--dataset " + file("bins") + " --results " + file("ours.csv") + " --json " + file("read.json"));
+  ASSERT_EQ(again.exit_code, 0) << again.text;
+  const Json ours = readJson("ours.json").at("all");
+  const Json read = readJson("read.json").at("all");
+  for (const char* figure : {"right", "wrong", "duplicates", "pickable", "recall", "precision", "average_precision"})
+    EXPECT_EQ(ours.at(figure), read.at(figure)) << figure;
+}
+
+TEST_F(EvaluateCommand, ThreadsDoNotChangeTheResult)
+{
+  ASSERT_EQ(run(onBins("--threads 1 --json " + file("one.json"))).exit_code, 0);
+  ASSERT_EQ(run(onBins("--threads 3 --json " + file("three.json"))).exit_code, 0);
+  EXPECT_EQ(readJson("one.json").at("all"), readJson("three.json").at("all"));
+  EXPECT_EQ(readJson("one.json").at("scenes").at(1).at("estimates"),
+            readJson("three.json").at("scenes").at(1).at("estimates"));
+}
+
+TEST_F(EvaluateCommand, MillimetresAndMirrorsOfOthersAreTold)
+{
+  const std::string header = "scene_id,im_id,obj_id,score,R,t,time\n";
+  folder_->writeFile("metres.csv", header + "1,0,1,0.9,1 0 0 0 1 0 0 0 1,0.1 0.0 0.6,0.5\n");
+  const Outcome metres =
+      run("--dataset " + file("bins") + " --results " + file("metres.csv") + " --json " + file("m.json"));
+  ASSERT_EQ(metres.exit_code, 0) << metres.text;
+  EXPECT_EQ(readJson("m.json").at("all").at("wrong"), 1);
+  EXPECT_EQ(readJson("m.json").at("timing_ms").at("total").at("median"), 500);
+  folder_->writeFile("mirror.csv", header + "1,0,1,0.9,-1 0 0 0 1 0 0 0 1,100 0 600,-1\n");
+  expectFailure("--dataset " + file("bins") + " --results " + file("mirror.csv"), 1,
+                {"mirror.csv", "line 2", "mirror image"});
+  folder_->writeFile("other.csv", header + "48,1,7,0.9,1 0 0 0 1 0 0 0 1,100 0 600,-1\n");
+  expectFailure("--dataset " + file("bins") + " --results " + file("other.csv"), 1, {"other.csv", "48/1/7"});
+}
+
+TEST_F(EvaluateCommand, WrongUseAndDamageHaveASentence)
+{
+  expectFailure("", 2, {"--dataset"});
+  expectFailure("--dataset " + file("none"), 1, {"none", "not a folder"});
+  expectFailure(onBins("--split test"), 2, {"'test'"});
+  expectFailure(onBins("--parts bolt"), 2, {"bolt", "three_way_tube"});
+  expectFailure(onBins("--visible 2"), 2, {"visible_levels", "(0, 1]"});
+  expectFailure(onBins("--max-error 3"), 2, {"max_error_share"});
+  expectFailure("--dataset " + file("bins") + " --results x.csv --repeat 3", 2, {"--repeat", "--results"});
+  expectFailure(onBins("--json " + file("no_such_folder/report.json")), 1, {"no_such_folder"});
+}
+}  // namespace
+}  // namespace bin_picking
