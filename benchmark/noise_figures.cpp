@@ -15,10 +15,10 @@ namespace
 constexpr int SMALL_TILE = 12;
 constexpr int LARGE_TILE = 32;
 constexpr std::array<int, 4> LAGS = {1, 2, 4, 8};
-constexpr double JUMP = 0.012;      // metres between the two sides of an edge
-constexpr int MAX_GAP = 12;         // pixels; what is wider is a shadow, not the loss at an edge
-constexpr double MIXED_STEEP = 5;   // pitches per pixel: surfaces are not seen that flat (79 degrees)
-constexpr int SMALL_HOLE = 30;      // pixels
+constexpr double JUMP = 0.012;     // metres between the two sides of an edge
+constexpr int MAX_GAP = 12;        // pixels; what is wider is a shadow, not the loss at an edge
+constexpr double MIXED_STEEP = 5;  // pitches per pixel: surfaces are not seen that flat (79 degrees)
+constexpr int SMALL_HOLE = 30;     // pixels
 constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
 
 struct Tile
@@ -27,7 +27,8 @@ struct Tile
   Eigen::MatrixXd residuals;  // metres
 };
 
-/// Deviation of a fully measured square from a polynomial in 1 / z, in which a plane is linear. False: not all measured.
+/// Deviation of a fully measured square from a polynomial in 1 / z, in which a plane is linear. False: not all
+/// measured.
 bool fitTile(const DepthGrid& grid, int u0, int v0, int side, bool quadratic, Tile& tile)
 {
   const int terms = quadratic ? 6 : 3;

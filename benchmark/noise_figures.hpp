@@ -17,10 +17,10 @@ struct NoiseFigures
   double large_tile_noise = 0;  ///< the same for 32 x 32 pixels: with the smooth errors
   double curved_noise = 0;      ///< deviation from quadrics of 12 x 12 pixels, median of the flatter half
   std::array<double, 4> correlation = {};  ///< of the deviations in the large tiles, 1, 2, 4 and 8 pixels apart
-  double edge_gap = 0;      ///< mean number of pixels lost between the two sides of a jump of depth
-  double closed_edges = 0;  ///< share of the jumps without any loss
-  double mixed_pixels = 0;  ///< pixels in between per jump
-  double small_holes = 0;   ///< share of the pixels that are lost in holes of at most 30 pixels
+  double edge_gap = 0;                     ///< mean number of pixels lost between the two sides of a jump of depth
+  double closed_edges = 0;                 ///< share of the jumps without any loss
+  double mixed_pixels = 0;                 ///< pixels in between per jump
+  double small_holes = 0;                  ///< share of the pixels that are lost in holes of at most 30 pixels
 };
 
 NoiseFigures noiseFigures(const DepthGrid& grid);

@@ -13,13 +13,13 @@ namespace
 /// The inner bin, and the things in it: numbers, sizes.
 struct SceneLayout
 {
-  Eigen::Vector3d bin;      // inner length, width, height
-  double floor_depth = 0;   // from the camera
-  double tilt = 0;          // of the camera, about x
+  Eigen::Vector3d bin;     // inner length, width, height
+  double floor_depth = 0;  // from the camera
+  double tilt = 0;         // of the camera, about x
   int num_boxes = 0;
   int num_cylinders = 0;
-  double size = 0;          // of the longest edges
-  double radius = 0;        // of the cylinders
+  double size = 0;    // of the longest edges
+  double radius = 0;  // of the cylinders
 };
 
 SceneLayout layoutFor(SensorClass type)
@@ -32,8 +32,8 @@ SceneLayout layoutFor(SensorClass type)
 void addQuad(TriangleMesh& mesh, const Eigen::Vector3d& corner, const Eigen::Vector3d& a, const Eigen::Vector3d& b)
 {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const Eigen::Vector3d& p : {corner, Eigen::Vector3d(corner + a), Eigen::Vector3d(corner + a + b),
-                                   Eigen::Vector3d(corner + b)})
+  for (const Eigen::Vector3d& p :
+       {corner, Eigen::Vector3d(corner + a), Eigen::Vector3d(corner + a + b), Eigen::Vector3d(corner + b)})
     mesh.vertices.push_back(p.cast<float>());
   mesh.triangles.push_back({first, first + 1, first + 2});
   mesh.triangles.push_back({first, first + 2, first + 3});
@@ -109,6 +109,11 @@ SensorParameters comparisonSensor(SensorClass type)
   parameters.width = stereo ? 302 : 516;
   parameters.height = stereo ? 200 : 386;
   const double focal_length = stereo ? 422.2 : 552.5;
+  // Lengths in pixels are angles in truth: the real clouds have been reduced to every fourth pixel.
+  const double scale = focal_length / cameraOf(sensorDefaults(type)).fx;
+  parameters.noise.correlation_length *= scale;
+  parameters.noise.bias_length *= scale;
+  parameters.edges.loss_width *= scale;
   parameters.field_of_view = 2 * std::atan(0.5 * parameters.width / focal_length);
   return parameters;
 }

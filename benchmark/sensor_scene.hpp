@@ -9,8 +9,8 @@
 
 namespace bin_picking::simulation
 {
-/// The sensor's defaults, with the picture of the real clouds that its class is compared with: the same number of pixels
-/// and focal length.
+/// The sensor's defaults, with the picture of the real clouds that its class is compared with: the same number of
+/// pixels and focal length.
 SensorParameters comparisonSensor(SensorClass type);
 
 /// A bin of about the size of those in the real clouds, with boxes and cylinders in it, under that sensor.

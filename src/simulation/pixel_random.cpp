@@ -52,9 +52,8 @@ void blurLine(const float* in, const std::vector<float>& kernel, float* out, std
 }  // namespace
 
 PixelRandom::PixelRandom(std::uint32_t seed, std::uint32_t stream)
-  : key_(mixed((static_cast<std::uint64_t>(seed) << 32 | stream) + 0x9e3779b97f4a7c15ull))
-{
-}
+    : key_(mixed((static_cast<std::uint64_t>(seed) << 32 | stream) + 0x9e3779b97f4a7c15ull))
+{}
 
 std::uint64_t PixelRandom::hash(int u, int v, std::uint64_t draw) const
 {
@@ -82,7 +81,7 @@ std::vector<float> correlatedNoise(int width, int height, double length, const P
   const auto rows = static_cast<std::size_t>(height + 2 * reach);
   std::vector<float> across(columns * rows);
   executor.forEach(rows, [&](std::size_t row) {
-    std::vector<float> white(static_cast<std::size_t>(width + 2 * reach));
+    std::vector<float> white(columns + 2 * (kernel.size() - 1));
     for (std::size_t i = 0; i < white.size(); ++i)
       white[i] = static_cast<float>(random.normal(static_cast<int>(i) - reach, static_cast<int>(row) - reach));
     blurLine(white.data(), kernel, across.data() + row * columns, columns);

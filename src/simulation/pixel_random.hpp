@@ -13,12 +13,14 @@ namespace bin_picking::simulation
 class PixelRandom
 {
 public:
+  static constexpr double MAX_NORMAL = 4.9;
+
   /// \param stream another one for every use within a scan
   PixelRandom(std::uint32_t seed, std::uint32_t stream);
 
   /// [0, 1). Pixels beside the picture, up to 2^15 away, have theirs too.
   double uniform(int u, int v) const { return static_cast<double>(hash(u, v, 0) >> 11) * 0x1p-53; }
-  /// Mean 0, standard deviation 1: the sum of eight even numbers, so never beyond 4.9.
+  /// Mean 0, standard deviation 1: the sum of eight even numbers, so never beyond MAX_NORMAL.
   double normal(int u, int v) const;
 
 private:

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "ray_scene.hpp"
 
+#include <tbb/task_arena.h>
+
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -43,6 +45,15 @@ bool isBlocked(RTCScene scene, const Eigen::Vector3d& origin, const Eigen::Vecto
   return ray.tfar < 0;  // how Embree says yes
 }
 
+/// One thread builds the search tree, so that it is the same every time.
+void commit(RTCScene scene)
+{
+  tbb::task_arena(1).execute([scene] {
+    const FlushDenormals flush;
+    rtcCommitScene(scene);
+  });
+}
+
 void checkObject(const SceneObject& object, std::size_t index)
 {
   const std::string which = "object " + std::to_string(index) + " of the virtual scene ";
@@ -51,8 +62,9 @@ void checkObject(const SceneObject& object, std::size_t index)
   for (const auto& triangle : object.mesh->triangles)
     for (const std::uint32_t vertex : triangle)
       if (vertex >= object.mesh->vertices.size())
-        throw ParameterError(which + "has a triangle with vertex " + std::to_string(vertex) + ", but the mesh has only " +
-                             std::to_string(object.mesh->vertices.size()) + "; load the mesh again");
+        throw ParameterError(which + "has a triangle with vertex " + std::to_string(vertex) +
+                             ", but the mesh has only " + std::to_string(object.mesh->vertices.size()) +
+                             "; load the mesh again");
   if (!object.T_camera_object.matrix().allFinite())
     throw ParameterError(which + "has a pose that is not finite; give it a rotation and a position in metres");
 }
@@ -72,8 +84,8 @@ FlushDenormals::FlushDenormals() : before_(0) {}
 FlushDenormals::~FlushDenormals() = default;
 #endif
 
-// One thread: Embree's own would join those of the caller, and neither meshes nor scenes are large.
-RayScene::RayScene() : device_(rtcNewDevice("threads=1")) { throwOnError("starting"); }
+// Without the device's option "threads=1": that one holds back every other use of TBB in this process.
+RayScene::RayScene() : device_(rtcNewDevice(nullptr)) { throwOnError("starting"); }
 RayScene::~RayScene() = default;
 
 void RayScene::throwOnError(const char* doing) const
@@ -108,7 +120,7 @@ const RayScene::MeshScene& RayScene::shapeOf(const SceneObject& object)
   rtcSetSceneFlags(shape.scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcAttachGeometry(shape.scene.get(), geometry);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(shape.scene.get());
+  commit(shape.scene.get());
   throwOnError("building the search tree of a mesh");
   return shapes_.emplace(object.mesh.get(), std::move(shape)).first->second;
 }
@@ -131,7 +143,6 @@ void RayScene::setObjects(const std::vector<SceneObject>& objects)
 {
   for (std::size_t i = 0; i < objects.size(); ++i)
     checkObject(objects[i], i);
-  const FlushDenormals flush;
   instances_.clear();
   scene_.reset(rtcNewScene(device_.get()));
   for (auto shape = shapes_.begin(); shape != shapes_.end();)
@@ -139,7 +150,7 @@ void RayScene::setObjects(const std::vector<SceneObject>& objects)
   rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
   for (const SceneObject& object : objects)
     addInstance(object);
-  rtcCommitScene(scene_.get());
+  commit(scene_.get());
   throwOnError("building the search tree of the scene");
 }
 

@@ -15,13 +15,13 @@ namespace bin_picking::simulation
 /// Where a ray meets a surface first.
 struct RayHit
 {
-  int object = -1;                                    ///< -1: it meets none
-  double depth = 0;                                   ///< the ray's parameter: point = origin + depth * direction
+  int object = -1;                                   ///< -1: it meets none
+  double depth = 0;                                  ///< the ray's parameter: point = origin + depth * direction
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit length, towards the ray's origin
 };
 
-/// Objects to be asked for what a ray meets; Embree's search trees of the meshes are kept while somebody holds the mesh.
-/// Questions may come from several threads at once, setObjects() not.
+/// Objects to be asked for what a ray meets; Embree's search trees of the meshes are kept while somebody holds the
+/// mesh. Questions may come from several threads at once, setObjects() not.
 class RayScene
 {
 public:

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "sensor.hpp"
 
+#include <string>
 #include <utility>
 
 #include "bin_picking_perception/common/error.hpp"
@@ -14,9 +15,9 @@ namespace bin_picking::simulation
 {
 struct VirtualSensor::Impl
 {
-  Impl(const SensorParameters& sensor_parameters, int num_threads) : parameters(sensor_parameters), executor(num_threads)
-  {
-  }
+  Impl(const SensorParameters& sensor_parameters, int num_threads)
+      : parameters(sensor_parameters), executor(num_threads)
+  {}
 
   SensorParameters parameters;
   Executor executor;
@@ -40,25 +41,21 @@ SensorParameters checked(SensorParameters parameters)
 DepthGrid measure(const RayScene& scene, const EffectContext& context)
 {
   Exposure exposure = expose(scene, context);
-  const SensorEdges& edge_parameters = context.parameters.edges;
-  const bool edges_matter = edge_parameters.window > 1 || edge_parameters.mixed_pixels > 0 ||
-                            (edge_parameters.loss > 0 && edge_parameters.loss_width > 0);
-  if (edges_matter)
-  {
-    const std::vector<float> edges = findEdges(context);
-    if (edge_parameters.window > 1)
-      matchWindows(exposure, edges, context);
-    spoilEdges(exposure, edges, context);
-  }
+  const std::vector<float> edges = findEdges(context);
+  const bool by_window = context.parameters.edges.window > 1;
+  if (by_window)
+    matchWindows(exposure, edges, context);
+  losePixelsBesideEdges(exposure, edges, context);
+  if (!by_window)
+    mixAcrossEdges(exposure, edges, context);
   punchHoles(exposure, context);
   return digitize(exposure, context);
 }
 }  // namespace
 
 VirtualSensor::VirtualSensor(const SensorParameters& parameters, int num_threads)
-  : impl_(std::make_unique<Impl>(checked(parameters), num_threads))
-{
-}
+    : impl_(std::make_unique<Impl>(checked(parameters), num_threads))
+{}
 
 VirtualSensor::~VirtualSensor() = default;
 VirtualSensor::VirtualSensor(VirtualSensor&&) noexcept = default;

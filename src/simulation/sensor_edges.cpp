@@ -66,6 +66,25 @@ std::vector<Offset> disc(double radius)
         offsets.push_back({du, dv});
   return offsets;
 }
+/// Even numbers in [0, 1], alike within a patch.
+std::vector<float> lossDraws(const EffectContext& context)
+{
+  const SensorView& view = context.view;
+  const double patch = context.parameters.edges.loss_size;
+  const PixelRandom random = stream(context, RandomStream::EdgeLoss);
+  std::vector<float> draws(view.size());
+  if (patch > 1)
+    draws = correlatedNoise(view.width, view.height, 0.5 * patch, random, context.executor);
+  context.executor.forEach(static_cast<std::size_t>(view.height), [&](std::size_t row) {
+    for (int u = 0, v = static_cast<int>(row); u < view.width; ++u)
+    {
+      float& draw = draws[view.index(u, v)];
+      draw = static_cast<float>(patch > 1 ? 0.5 * std::erfc(-static_cast<double>(draw) * M_SQRT1_2)
+                                          : random.uniform(u, v));
+    }
+  });
+  return draws;
+}
 }  // namespace
 
 std::vector<float> findEdges(const EffectContext& context)
@@ -81,16 +100,15 @@ std::vector<float> findEdges(const EffectContext& context)
   return edges;
 }
 
-void spoilEdges(Exposure& exposure, const std::vector<float>& edges, const EffectContext& context)
+void losePixelsBesideEdges(Exposure& exposure, const std::vector<float>& edges, const EffectContext& context)
 {
   const SensorView& view = context.view;
   const SensorEdges& parameters = context.parameters.edges;
-  const PixelRandom loss = stream(context, RandomStream::EdgeLoss);
-  const PixelRandom mixed = stream(context, RandomStream::MixedPixels);
-  const PixelRandom share = stream(context, RandomStream::MixedDepth);
+  if (parameters.loss_width == 0 || parameters.loss == 0)
+    return;
+  const std::vector<float> draws = lossDraws(context);
   // The pixels next to the edge are half a pixel away from it.
-  const std::vector<Offset> beside = parameters.loss_width > 0 ? disc(std::max(0.0, parameters.loss_width - 0.5))
-                                                               : std::vector<Offset>();
+  const std::vector<Offset> beside = disc(std::max(0.0, parameters.loss_width - 0.5));
   for (int v = 0; v < view.height; ++v)
     for (int u = 0; u < view.width; ++u)
     {
@@ -98,14 +116,21 @@ void spoilEdges(Exposure& exposure, const std::vector<float>& edges, const Effec
         continue;
       for (const Offset& offset : beside)
         if (view.inside(u + offset.du, v + offset.dv) &&
-            loss.uniform(u + offset.du, v + offset.dv) < parameters.loss)
+            static_cast<double>(draws[view.index(u + offset.du, v + offset.dv)]) < parameters.loss)
           exposure.received[view.index(u + offset.du, v + offset.dv)] = 0;
     }
+}
+
+void mixAcrossEdges(Exposure& exposure, const std::vector<float>& edges, const EffectContext& context)
+{
+  const SensorView& view = context.view;
+  const PixelRandom mixed = stream(context, RandomStream::MixedPixels);
+  const PixelRandom share = stream(context, RandomStream::MixedDepth);
   for (int v = 0; v < view.height; ++v)
     for (int u = 0; u < view.width; ++u)
     {
       const std::size_t i = view.index(u, v);
-      if (std::isnan(edges[i]) || mixed.uniform(u, v) >= parameters.mixed_pixels)
+      if (std::isnan(edges[i]) || mixed.uniform(u, v) >= context.parameters.edges.mixed_pixels)
         continue;
       const auto t = static_cast<float>(share.uniform(u, v));
       exposure.depth[i] = (1 - t) * view.depth[i] + t * edges[i];

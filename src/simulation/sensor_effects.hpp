@@ -49,8 +49,12 @@ std::vector<float> findEdges(const EffectContext& context);
 /// Depths as found by comparing windows: the mean disparity of the surface that wins the window.
 void matchWindows(Exposure& exposure, const std::vector<float>& edges, const EffectContext& context);
 
-/// Loses pixels beside edges, mixes depths across them, punches holes.
-void spoilEdges(Exposure& exposure, const std::vector<float>& edges, const EffectContext& context);
+void losePixelsBesideEdges(Exposure& exposure, const std::vector<float>& edges, const EffectContext& context);
+
+/// Flying pixels: some at an edge report a depth somewhere between the two surfaces.
+void mixAcrossEdges(Exposure& exposure, const std::vector<float>& edges, const EffectContext& context);
+
+/// Loses round patches without cause.
 void punchHoles(Exposure& exposure, const EffectContext& context);
 
 /// Adds noise, rounds to steps, and turns depths into points.

@@ -39,16 +39,16 @@ class Illumination
 {
 public:
   Illumination(const RayScene& scene, const EffectContext& context)
-    : scene_(scene),
-      view_(context.view),
-      parameters_(context.parameters),
-      eyes_(eyesOf(context.parameters)),
-      min_cosine_(std::cos(context.parameters.light.max_incidence)),
-      signal_(context.seed, static_cast<std::uint32_t>(RandomStream::Signal)),
-      highlight_(context.seed, static_cast<std::uint32_t>(RandomStream::Highlight)),
-      incidence_(context.seed, static_cast<std::uint32_t>(RandomStream::Incidence))
-  {
-  }
+      : scene_(scene),
+        view_(context.view),
+        parameters_(context.parameters),
+        eyes_(eyesOf(context.parameters)),
+        min_cosine_(std::cos(context.parameters.light.max_incidence)),
+        widest_spread_(std::exp(PixelRandom::MAX_NORMAL * context.parameters.light.loss_spread)),
+        signal_(context.seed, static_cast<std::uint32_t>(RandomStream::Signal)),
+        highlight_(context.seed, static_cast<std::uint32_t>(RandomStream::Highlight)),
+        incidence_(context.seed, static_cast<std::uint32_t>(RandomStream::Incidence))
+  {}
 
   /// Whether the pixel, which sees a surface, is measured.
   bool received(int u, int v) const
@@ -65,10 +65,14 @@ public:
   }
 
 private:
-  /// Log-normal: what returns ten times the light that is needed is never lost by it.
-  double spread(const PixelRandom& random, int u, int v) const
+  /// Whether a value beats its limit, which differs from pixel to pixel by a log-normal factor: what returns ten times
+  /// the light that is needed is never lost by it.
+  bool beats(double limit, double value, const PixelRandom& random, int u, int v) const
   {
-    return parameters_.light.loss_spread > 0 ? std::exp(parameters_.light.loss_spread * random.normal(u, v)) : 1;
+    const double spread = parameters_.light.loss_spread;
+    if (spread == 0 || value >= limit * widest_spread_)
+      return value >= limit;
+    return value * std::exp(spread * random.normal(u, v)) >= limit;
   }
 
   bool brightEnough(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int u, int v) const
@@ -77,10 +81,10 @@ private:
     const double cosine = normal.dot(to_light.normalized());
     const double nearness = parameters_.reference_distance * parameters_.reference_distance / to_light.squaredNorm();
     const double signal = parameters_.light.albedo * cosine * nearness;
-    return signal * spread(signal_, u, v) >= parameters_.light.min_signal;
+    return beats(parameters_.light.min_signal, signal, signal_, u, v);
   }
 
-  bool steepEnough(double cosine, int u, int v) const { return cosine * spread(incidence_, u, v) >= min_cosine_; }
+  bool steepEnough(double cosine, int u, int v) const { return beats(min_cosine_, cosine, incidence_, u, v); }
 
   /// Where the normal halves the angle between the light and an eye, a smooth surface mirrors the one into the other.
   /// The lobe is that of Trowbridge and Reitz (GGX).
@@ -114,6 +118,7 @@ private:
   const SensorParameters& parameters_;
   Eyes eyes_;
   double min_cosine_;
+  double widest_spread_;
   PixelRandom signal_;
   PixelRandom highlight_;
   PixelRandom incidence_;

@@ -27,10 +27,9 @@ NoiseFields drawFields(const EffectContext& context)
   const SensorParameters& p = context.parameters;
   NoiseFields fields;
   if (p.noise.depth_noise > 0 && p.noise.white_share < 1)
-    fields.correlated =
-        correlatedNoise(p.width, p.height, p.noise.correlation_length,
-                        PixelRandom(context.seed, static_cast<std::uint32_t>(RandomStream::Correlated)),
-                        context.executor);
+    fields.correlated = correlatedNoise(p.width, p.height, p.noise.correlation_length,
+                                        PixelRandom(context.seed, static_cast<std::uint32_t>(RandomStream::Correlated)),
+                                        context.executor);
   if (p.noise.bias > 0)
     fields.bias = smoothNoise(p.width, p.height, p.noise.bias_length,
                               PixelRandom(BIAS_SEED, static_cast<std::uint32_t>(RandomStream::Bias)), context.executor);
@@ -41,14 +40,13 @@ class Digitizer
 {
 public:
   Digitizer(const EffectContext& context)
-    : view_(context.view),
-      parameters_(context.parameters),
-      fields_(drawFields(context)),
-      white_(context.seed, static_cast<std::uint32_t>(RandomStream::White)),
-      white_weight_(std::sqrt(parameters_.noise.white_share)),
-      correlated_weight_(std::sqrt(1 - parameters_.noise.white_share))
-  {
-  }
+      : view_(context.view),
+        parameters_(context.parameters),
+        fields_(drawFields(context)),
+        white_(context.seed, static_cast<std::uint32_t>(RandomStream::White)),
+        white_weight_(std::sqrt(parameters_.noise.white_share)),
+        correlated_weight_(std::sqrt(1 - parameters_.noise.white_share))
+  {}
 
   double measured(double depth, int u, int v) const { return rounded(depth + error(depth, u, v)); }
 

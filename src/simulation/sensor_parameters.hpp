@@ -30,11 +30,11 @@ struct SensorLight
 /// What is wrong with a depth far from any edge.
 struct SensorNoise
 {
-  double depth_noise = 0.00015;
-  double correlation_length = 2;
-  double white_share = 0.3;
-  double bias = 0.00005;
-  double bias_length = 40;
+  double depth_noise = 0.00019;
+  double correlation_length = 12;
+  double white_share = 0.13;
+  double bias = 0.00015;
+  double bias_length = 36;
   double disparity_step = 0;
   double depth_step = 0;
   double drop_outs = 0.0005;
@@ -48,8 +48,9 @@ struct SensorEdges
 {
   double jump = 0.003;
   double loss_width = 1.5;
-  double loss = 0.8;
-  double mixed_pixels = 0.03;
+  double loss = 0.3;
+  double loss_size = 1;
+  double mixed_pixels = 0.005;
   int window = 1;
   double fattening = 0.5;
 
@@ -64,7 +65,7 @@ struct SensorParameters
   int height = 1024;
   double field_of_view = 0.735;
   double baseline = 0.2;
-  double second_field_of_view = 0.8;
+  double second_field_of_view = 0.829;
   double convergence = 0.8;
   double reference_distance = 0.8;
   SensorLight light;

@@ -91,6 +91,7 @@ std::vector<ObjectView> countPixels(const RayScene& scene, const std::vector<Sce
                                     const SensorView& view, const DepthGrid& measured, const Executor& executor)
 {
   std::vector<Rectangle> bounds;
+  bounds.reserve(objects.size());
   for (const SceneObject& object : objects)
     bounds.push_back(boundsOf(object, view));
   std::vector<std::vector<ObjectView>> rows(static_cast<std::size_t>(view.height));

@@ -73,14 +73,22 @@ Sample meanOf(const std::vector<Sample>& samples, std::size_t begin, std::size_t
   return {static_cast<float>(static_cast<double>(end - begin) / inverse_depth), 2 * num_received > end - begin};
 }
 
+/// The nearer surface wins by filling enough of the window; around that the result passes from one to the other.
 Sample winner(Window& window, const SensorEdges& parameters)
 {
   std::vector<Sample>& samples = window.samples;
   if (!window.has_edge)
     return meanOf(samples, 0, samples.size());
   const std::size_t split = splitByDepth(samples, parameters.jump);
-  const bool nearer_wins = static_cast<double>(split) >= parameters.fattening * window.num_pixels;
-  return nearer_wins ? meanOf(samples, 0, split) : meanOf(samples, split, samples.size());
+  const Sample nearer = meanOf(samples, 0, split);
+  const Sample farther = meanOf(samples, split, samples.size());
+  const double lead = static_cast<double>(split) / window.num_pixels - parameters.fattening;
+  const Sample& best = lead >= 0 ? nearer : farther;
+  if (std::abs(lead) >= 0.5 * parameters.mixed_pixels || std::isnan(nearer.depth) || std::isnan(farther.depth))
+    return best;
+  const double t = lead / parameters.mixed_pixels + 0.5;
+  const double inverse_depth = t / static_cast<double>(nearer.depth) + (1 - t) / static_cast<double>(farther.depth);
+  return {static_cast<float>(1 / inverse_depth), best.received};
 }
 }  // namespace
 
