@@ -151,7 +151,7 @@ EvaluationReport evaluateScenes(const Arguments& arguments, EvaluationDataset& d
   const DetectorParameters detector_parameters = detectorParameters(arguments);
   const int repetitions = parseInteger(arguments.value("--repeat", "1"), "--repeat", 1, 10000);
   EvaluationReport report;
-  report.title = fs::absolute(fs::path(dataset.path) / ".").parent_path().filename().string();
+  report.title = fs::canonical(dataset.path).filename().string();
   report.details = details(arguments);
   report.parameters = evaluationParameters(arguments);
   Progress progress;

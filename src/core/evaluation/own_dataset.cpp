@@ -100,9 +100,7 @@ void readCameraSize(const std::string& path, EvaluationScene& scene)
 EvaluationScene readScene(const fs::path& folder, int number)
 {
   EvaluationScene scene;
-  scene.name = fs::absolute(folder).lexically_normal().filename().string();
-  if (scene.name.empty())  // of a path that ends in a slash
-    scene.name = fs::absolute(folder).lexically_normal().parent_path().filename().string();
+  scene.name = fs::canonical(folder).filename().string();  // also of a path that ends in a slash
   scene.scene_id = number;
   scene.file = (folder / SCAN).string();
   if (!isThere(scene.file))
