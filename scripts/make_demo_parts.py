@@ -3,9 +3,9 @@
 # SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 """Writes the meshes of the demo parts: config/parts/<part>/<part>.stl (binary STL, millimetres).
 
-Parts with a <part>.scad beside the mesh are drawn by OpenSCAD (apt-get install openscad). The others are lofts, made here:
-a row of closed rings with the same number of vertices, each linked to the next. Neighbouring lofts share the exact vertices
-of their seams. Every surface is checked before it is written: closed, turned outwards, no flat triangles.
+Parts with a <part>.scad beside the mesh are drawn by OpenSCAD (apt-get install openscad). The others are lofts, made
+here: a row of closed rings with the same number of vertices, each linked to the next. Neighbouring lofts share the exact
+vertices of their seams. Every surface is checked before it is written: closed, turned outwards, no flat triangles.
 
     scripts/make_demo_parts.py [--output config/parts]
 """
@@ -211,7 +211,7 @@ def from_scad(source):
         result = subprocess.run(['openscad', '-o', mesh, source], capture_output=True, text=True)
         if result.returncode != 0 or 'WARNING' in result.stderr:
             raise SystemExit(f'openscad cannot draw {source}:\n{result.stderr}')
-        return part_mesh.read_ascii_stl(mesh.read_text())
+        return part_mesh.in_fixed_order(part_mesh.read_ascii_stl(mesh.read_text()))
 
 
 def main():

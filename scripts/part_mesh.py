@@ -44,6 +44,12 @@ def read_ascii_stl(text):
     return np.array(re.findall(r'vertex\s+(\S+)\s+(\S+)\s+(\S+)', text), dtype=float).reshape(-1, 3, 3)
 
 
+def in_fixed_order(triangles):
+    """The same triangles, sorted and each begun at its first corner: OpenSCAD writes them as they lie in memory."""
+    rows = [min(tuple(np.roll(t, -k, axis=0).ravel()) for k in range(3)) for t in triangles]
+    return np.array(sorted(rows)).reshape(-1, 3, 3)
+
+
 def write_stl(path, name, vertices, faces):
     corners = vertices[faces].astype(np.float32)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

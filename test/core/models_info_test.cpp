@@ -35,7 +35,7 @@ std::string errorOf(const std::string& fields)
 {
   const TemporaryFolder folder;
   const std::string path = folder.write("models_info.json", "{\"7\": {" + fields + "}}");
-  const std::string message = messageOf<FileError>([&] { loadModelsInfo(path); });
+  std::string message = messageOf<FileError>([&] { loadModelsInfo(path); });
   expectWords(message, {path, "model 7"});
   return message;
 }
@@ -230,7 +230,7 @@ TEST(ModelsInfo, refusesWhatIsNoModelsInfo)
   const TemporaryFolder folder;
   const auto message = [&](const std::string& content) {
     const std::string path = folder.write("models_info.json", content);
-    const std::string text = messageOf<FileError>([&] { loadModelsInfo(path); });
+    std::string text = messageOf<FileError>([&] { loadModelsInfo(path); });
     expectWords(text, {path});
     return text;
   };
@@ -240,8 +240,8 @@ TEST(ModelsInfo, refusesWhatIsNoModelsInfo)
   expectWords(message("[]"), {"no model"});
   expectWords(message("{}"), {"no model"});
   expectWords(message("{\"1\": 3}"), {"model 1", "object"});
-  expectWords(message("{\"-1\": {" + BOX + "}}"), {"'-1'", "id"});
-  expectWords(message("{\"obj_1\": {" + BOX + "}}"), {"'obj_1'", "id"});
+  expectWords(message("{\"-1\": {" + BOX + "}}"), {"model -1", "no id"});
+  expectWords(message("{\"obj_1\": {" + BOX + "}}"), {"model obj_1", "no id"});
   expectWords(message("{\"1\": {" + BOX + "}, \"01\": {" + BOX + "}}"), {"twice"});
   EXPECT_THROW(loadModelsInfo(folder.path("missing.json")), FileError);
   EXPECT_THROW(loadModelsInfo(folder.path("")), FileError);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
-// Bolt with a hexagon head; a smooth cylinder stands for the thread. Millimetres; axis z, the bearing face of the head in
-// z = 0, shank towards +z, a corner of the head on +x. Of order 6 about z.
+// Bolt with a hexagon head; a smooth cylinder stands for the thread. Millimetres; axis z, the bearing face of the head
+// in z = 0, shank towards +z, a corner of the head on +x. Of order 6 about z.
 
 across_flats = 36;
 head = 15;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
-// Angle bracket with two ribs. Millimetres; the base lies in z = 0 along +x, the wall stands in x = 0 along +z, both are
-// centred about y = 0. The base is longer than the wall and has round holes where the wall has slots: no symmetry.
+// Angle bracket with two ribs. Millimetres; the base lies in z = 0 along +x, the wall stands in x = 0 along +z, both
+// are centred about y = 0. The base is longer than the wall and has round holes where the wall has slots: no symmetry.
 
 base = 82;
 wall = 68;
@@ -73,4 +73,5 @@ for (side = [-1, 1])
   translate([0, side * rib_offset + rib / 2, 0])
     rotate([90, 0, 0])
       linear_extrude(rib)
-        polygon([[1, 1], [plate + rib_base, 1], [plate + rib_base, plate], [plate, plate + rib_wall], [1, plate + rib_wall]]);
+        polygon([[1, 1], [plate + rib_base, 1], [plate + rib_base, plate],
+                 [plate, plate + rib_wall], [1, plate + rib_wall]]);

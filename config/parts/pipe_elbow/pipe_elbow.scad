@@ -25,7 +25,8 @@ inside = [[end, socket_radius + chamfer], [end - chamfer, socket_radius],
 // A ring about the axis of the arm along x, of the arm along z, and of the bend.
 function on_x(p) = [for (i = [0:segments - 1]) let (t = 360 * i / segments) [p[0], p[1] * sin(t), p[1] * cos(t)]];
 function on_z(p) = [for (i = [0:segments - 1]) let (t = 360 * i / segments) [p[1] * cos(t), p[1] * sin(t), p[0]]];
-function on_bend(turn, radius) = [for (i = [0:segments - 1]) let (t = 360 * i / segments, r = bend_radius - radius * cos(t))
+function on_bend(turn, radius) = [for (i = [0:segments - 1])
+    let (t = 360 * i / segments, r = bend_radius - radius * cos(t))
     [bend_radius - r * sin(turn), radius * sin(t), bend_radius - r * cos(turn)]];
 function reversed(list) = [for (i = [len(list) - 1:-1:0]) list[i]];
 

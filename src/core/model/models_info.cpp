@@ -29,6 +29,11 @@ Json parse(const std::string& path)
   }
 }
 
+[[noreturn]] void fail(const std::string& path, const std::string& model, const std::string& what)
+{
+  throw FileError("'" + path + "', model " + model + ": " + what);
+}
+
 /// -1: not an id, so that the caller can name the file.
 int parseId(const std::string& text)
 {
@@ -50,7 +55,7 @@ std::map<int, ModelInfo> loadModelsInfo(const std::string& path)
   {
     const int id = parseId(key);
     if (id < 0)
-      throw FileError("'" + path + "': the key '" + key + "' is no model id; ids are whole numbers of 0 or more");
+      fail(path, key, "this is no id; ids are whole numbers of 0 or more");
     try
     {
       if (!models.emplace(id, modelInfoFromJson(entry)).second)
@@ -58,7 +63,7 @@ std::map<int, ModelInfo> loadModelsInfo(const std::string& path)
     }
     catch (const ParameterError& error)
     {
-      throw FileError("'" + path + "', model " + key + ": " + error.what());
+      fail(path, key, error.what());
     }
   }
   return models;
