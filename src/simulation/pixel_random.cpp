@@ -78,7 +78,7 @@ std::vector<float> correlatedNoise(int width, int height, double length, const P
   const std::vector<float> kernel = blurKernel(length);
   const int reach = static_cast<int>(kernel.size()) - 1;
   const auto columns = static_cast<std::size_t>(width);
-  const auto rows = static_cast<std::size_t>(height + 2 * reach);
+  const std::size_t rows = static_cast<std::size_t>(height) + 2 * (kernel.size() - 1);
   std::vector<float> across(columns * rows);
   executor.forEach(rows, [&](std::size_t row) {
     std::vector<float> white(columns + 2 * (kernel.size() - 1));

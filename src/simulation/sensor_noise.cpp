@@ -70,6 +70,8 @@ private:
 
   double incidenceCosine(int u, int v) const
   {
+    if (view_.labels[view_.index(u, v)] < 0)
+      return 1;  // a window found a surface beside nothing
     const double cosine = -view_.normals[view_.index(u, v)].cast<double>().dot(view_.ray(u, v).normalized());
     return std::max(cosine, MIN_COSINE);
   }
