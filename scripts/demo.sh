@@ -50,7 +50,7 @@ export PATH="$devel_dir/lib/bin_picking_perception:/usr/bin:$PATH"
 command -v bin_picking >/dev/null || fail "the build left no bin_picking in $devel_dir."
 
 log "a virtual bin, seed $seed"
-bin_picking demo-scene "$part" --seed "$seed" -o "$scene"
+bin_picking simulate "$part" --seed "$seed" -o "$scene"
 
 log "training and detection on the command line"
 bin_picking train "$part" -o "$out/part.model"

@@ -43,6 +43,15 @@ std::string usageOf(const Option& option)
   return option.name + " " + option.placeholder + (option.values == Values::One ? "" : "...");
 }
 
+bool takesMore(const Syntax& syntax)
+{
+  const std::string ending = "...";
+  if (syntax.positionals.empty() || syntax.positionals.back().size() < ending.size())
+    return false;
+  const std::string& last = syntax.positionals.back();
+  return last.compare(last.size() - ending.size(), ending.size(), ending) == 0;
+}
+
 std::string quoted(const std::string& word) { return "'" + word + "'"; }
 }  // namespace
 
@@ -55,7 +64,7 @@ Arguments::Arguments(const Syntax& syntax, const std::vector<std::string>& words
     else
       positionals_.push_back(words[next++]);
   }
-  if (positionals_.size() > syntax.positionals.size())
+  if (positionals_.size() > syntax.positionals.size() && !takesMore(syntax))
     throw UsageError("superfluous argument " + quoted(positionals_[syntax.positionals.size()]) + "; 'bin_picking " +
                      syntax.command + " --help' shows what is understood");
   if (positionals_.size() < syntax.positionals.size())

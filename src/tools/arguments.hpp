@@ -38,7 +38,7 @@ struct Syntax
 {
   std::string command;
   std::string summary;                   ///< one sentence
-  std::vector<std::string> positionals;  ///< placeholders, all required
+  std::vector<std::string> positionals;  ///< placeholders, all required; "NAME..." as the last one: one or more
   std::vector<Option> options;           ///< --help is always there
   std::string example;                   ///< a command line that works, without the program's name
 };
@@ -55,6 +55,7 @@ public:
   std::string value(const std::string& option, const std::string& fallback = "") const;
   const std::vector<std::string>& values(const std::string& option) const;
   const std::string& positional(std::size_t index) const { return positionals_.at(index); }
+  const std::vector<std::string>& positionals() const { return positionals_; }
 
 private:
   void readOption(const Syntax& syntax, const std::vector<std::string>& words, std::size_t& next);

@@ -17,6 +17,6 @@ Command trainCommand();
 Command detectCommand();
 Command matchCommand();
 Command evaluateCommand();
-Command demoSceneCommand();
+Command simulateCommand();
 Command parametersCommand();
 }  // namespace bin_picking::tools

@@ -23,7 +23,7 @@ constexpr int WRONG_USAGE = 2;
 
 std::vector<Command> commands()
 {
-  return {trainCommand(), detectCommand(), matchCommand(), evaluateCommand(), demoSceneCommand(), parametersCommand()};
+  return {trainCommand(), detectCommand(), matchCommand(), evaluateCommand(), simulateCommand(), parametersCommand()};
 }
 
 void printOverview(std::ostream& out)

@@ -7,7 +7,7 @@
 #include "bin_picking_perception/detector_parameters.hpp"
 #include "bin_picking_perception/model/training_parameters.hpp"
 #include "commands.hpp"
-#include "demo_scene.hpp"
+#include "virtual_cell.hpp"
 
 namespace bin_picking::tools
 {
@@ -30,15 +30,15 @@ void parameters(const Arguments& arguments)
     throw UsageError("--preset goes with the parameters of detect; those of " + command + " have none");
   DetectorParameters detector = DetectorParameters::preset(arguments.value("--preset", "fast"));
   TrainingParameters training;
-  simulation::DemoSceneParameters scene;
+  simulation::CellParameters cell;
   if (command == "detect")
     print(arguments, "detector", detector);
   else if (command == "train")
     print(arguments, "training", training);
-  else if (command == "demo-scene")
-    print(arguments, "demo_scene", scene);
+  else if (command == "simulate")
+    print(arguments, "simulate", cell);
   else
-    throw UsageError("--of is '" + command + "', but it must be one of: detect, train, demo-scene");
+    throw UsageError("--of is '" + command + "', but it must be one of: detect, train, simulate");
 }
 }  // namespace
 
@@ -48,7 +48,7 @@ Command parametersCommand()
            "Lists every parameter with its value, unit, range and effect; as YAML that --config reads, or as a table.",
            {},
            {{"--preset", "NAME", Values::One, "paper, fast or accurate (default fast)"},
-            {"--of", "COMMAND", Values::One, "detect (default), train or demo-scene"},
+            {"--of", "COMMAND", Values::One, "detect (default), train or simulate"},
             {"--markdown", "", Values::None, "a Markdown table in place of YAML"}},
            "parameters --preset accurate > accurate.yaml"},
           parameters};
