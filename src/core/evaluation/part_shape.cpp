@@ -38,6 +38,7 @@ std::vector<Eigen::Vector3f> extremePoints(const TriangleMesh& mesh)
     corners = std::move(farthest);
   }
   std::vector<Eigen::Vector3f> points;
+  points.reserve(corners.size());
   for (const std::uint32_t corner : corners)
     points.push_back(mesh.vertices[corner]);
   return points;

@@ -37,23 +37,23 @@ double largestDistanceOf(const PartShape& shape, const Pose& estimate, const Pos
   return maximumSymmetryAwareDistance(shape.extreme_points, estimate, truth, shape.symmetry);
 }
 
-void requireEstimates(const EvaluationScene& scene, const std::vector<PoseEstimate>& estimates)
+void requireEstimate(const EvaluationScene& scene, const PoseEstimate& estimate)
 {
-  for (const PoseEstimate& estimate : estimates)
-  {
-    const std::string what = "An estimate of '" + estimate.part + "' in scene " + scene.name;
-    const std::string fault = rigidityFault(estimate.T_camera_object.linear(), estimate.T_camera_object.translation());
-    if (!fault.empty())
-      throw ParameterError(what + " " + fault + ".");
-    if (std::isnan(estimate.score))
-      throw ParameterError(what + " has a score that is not a number, so that it has no rank; give it one.");
-    if (std::find(scene.parts.begin(), scene.parts.end(), estimate.part) == scene.parts.end())
-      throw ParameterError(what + " is of a part that the scene does not search for; leave it out.");
-  }
-  for (const TrueInstance& instance : scene.instances)
-    if (std::isnan(instance.visible_fraction))
-      throw ParameterError("An instance of '" + instance.part + "' in scene " + scene.name +
-                           " has no visible fraction; estimate it from the scan first.");
+  const std::string what = "An estimate of '" + estimate.part + "' in scene " + scene.name;
+  const std::string fault = rigidityFault(estimate.T_camera_object.linear(), estimate.T_camera_object.translation());
+  if (!fault.empty())
+    throw ParameterError(what + " " + fault + ".");
+  if (std::isnan(estimate.score))
+    throw ParameterError(what + " has a score that is not a number, so that it has no rank; give it one.");
+  if (std::find(scene.parts.begin(), scene.parts.end(), estimate.part) == scene.parts.end())
+    throw ParameterError(what + " is of a part that the scene does not search for; leave it out.");
+}
+
+void requireInstance(const EvaluationScene& scene, const TrueInstance& instance)
+{
+  if (std::isnan(instance.visible_fraction))
+    throw ParameterError("An instance of '" + instance.part + "' in scene " + scene.name +
+                         " has no visible fraction; estimate it from the scan first.");
 }
 
 using PoseDistance = double (*)(const PartShape&, const Pose&, const Pose&);
@@ -207,7 +207,10 @@ std::vector<std::optional<std::size_t>> assignGreedily(const Eigen::MatrixXd& er
 JudgedScene judgeScene(const EvaluationScene& scene, const std::vector<PoseEstimate>& estimates,
                        const PartShapes& shapes, const EvaluationParameters& parameters)
 {
-  requireEstimates(scene, estimates);
+  for (const PoseEstimate& estimate : estimates)
+    requireEstimate(scene, estimate);
+  for (const TrueInstance& instance : scene.instances)
+    requireInstance(scene, instance);
   JudgedScene judged;
   judged.scene = scene;
   judged.estimates = bestFirst(estimates);
