@@ -8,23 +8,11 @@
 #include <vector>
 
 #include "bin_picking_perception/common/oriented_points.hpp"
-#include "bin_picking_perception/common/parameters.hpp"
+#include "physics_parameters.hpp"
 #include "rigid_body.hpp"
 
 namespace bin_picking::simulation
 {
-struct PhysicsParameters
-{
-  double friction = 0.35;
-  double restitution = 0.05;
-  double drop_height = 0.03;
-  double drop_interval = 0.1;
-  double time_step = 0.005;
-  double max_settling_time = 3;
-
-  void visit(ParameterVisitor& v);
-};
-
 /// One part in the bin.
 struct Body
 {
@@ -43,7 +31,7 @@ public:
 
   /// \param inner_size length, width, height of the bin, metres
   /// \throws ParameterError a parameter is out of its range; a shape does not fit into the bin
-  BinPhysics(std::vector<std::shared_ptr<const RigidBodyShape>> shapes, const Eigen::Vector3d& inner_size,
+  BinPhysics(const std::vector<std::shared_ptr<const RigidBodyShape>>& shapes, const Eigen::Vector3d& inner_size,
              const PhysicsParameters& parameters);
   ~BinPhysics();
   BinPhysics(BinPhysics&&) noexcept;
@@ -52,14 +40,17 @@ public:
   /// Drops parts one after the other, at random places and attitudes, just above what lies there already, and waits
   /// until all rest. A part that ends outside is dropped again, a few times.
   /// \param shape_indices what to drop, in this order
-  /// \throws ParameterError the bin is too full: parts end outside again and again, or lie above the rim
+  /// \throws ParameterError the bin is too full: a part ends outside again and again, or parts lie above the rim. What
+  ///   was dropped stays where it is until it is removed or cleared.
   void drop(const std::vector<int>& shape_indices, std::uint32_t seed, const Progress& progress = {});
 
-  /// Takes a part away and waits until the others rest. False: there is no such part.
+  /// Takes a part away and waits until the others rest in the bin. False: there is no such part.
+  /// \throws ParameterError another part falls out again and again
   bool remove(int id);
-  /// Lifts a part out and lets it fall back in at a random place and attitude; waits until all rest. False: as above.
+  /// Lifts a part out and lets it fall back in at a random place and attitude; waits until all rest in the bin. False,
+  /// and throws: as above.
   bool dropAgain(int id, std::uint32_t seed);
-  /// Takes all parts away.
+  /// Takes all parts away; what is dropped from then on falls as in a new bin.
   void clear();
 
   /// In the order of dropping.
