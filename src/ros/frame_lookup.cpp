@@ -19,7 +19,7 @@ std::string describe(const std::string& target, const std::string& source, const
                      const std::string& why)
 {
   std::ostringstream text;
-  text << "No transform from " << source << " to " << target << " at the cloud's time " << stamp << ": " << why;
+  text << "No transform from " << source << " to " << target << " at the time " << stamp << ": " << why;
   return text.str();
 }
 }  // namespace

@@ -8,11 +8,6 @@ namespace bin_picking_ros
 {
 namespace
 {
-std::string leftText(std::size_t num_left)
-{
-  return std::to_string(num_left) + (num_left == 1 ? " part is" : " parts are") + " left.";
-}
-
 std::int8_t toCode(PickOutcome::Kind kind)
 {
   switch (kind)
@@ -34,17 +29,19 @@ std::string describe(PickOutcome::Kind kind, const std::string& part)
   switch (kind)
   {
     case PickOutcome::Kind::Taken:
-      return part + " was taken; ";
+      return "Took " + part + "; ";
     case PickOutcome::Kind::Missed:
       return "The grip missed " + part + "; ";
     case PickOutcome::Kind::DroppedBack:
-      return part + " fell back into the bin; ";
+      return "Lost " + part + ", which fell back into the bin; ";
     case PickOutcome::Kind::NoSuchPart:
       break;
   }
   return "There is no " + part + "; look at the newest ~truth; ";
 }
 }  // namespace
+
+std::string partsText(std::size_t count) { return std::to_string(count) + (count == 1 ? " part" : " parts"); }
 
 TakePartResponse toAnswer(const PickOutcome& outcome, int id)
 {
@@ -53,9 +50,8 @@ TakePartResponse toAnswer(const PickOutcome& outcome, int id)
   answer.id = outcome.id;
   answer.part = outcome.part;
   answer.num_left = static_cast<std::uint32_t>(outcome.num_left);
-  const std::string part =
-      outcome.part.empty() ? "part " + std::to_string(id) : "Part " + std::to_string(id) + " (" + outcome.part + ")";
-  answer.message = describe(outcome.kind, part) + leftText(outcome.num_left);
+  const std::string part = "part " + std::to_string(id) + (outcome.part.empty() ? "" : " (" + outcome.part + ")");
+  answer.message = describe(outcome.kind, part) + partsText(outcome.num_left) + " left.";
   return answer;
 }
 
@@ -70,7 +66,7 @@ TakePartResponse nothingThere(const bin_picking_perception::TakePart::Request& r
   text.precision(4);
   text << "No " << (request.part.empty() ? "part" : request.part) << " lies at [" << p.x << ", " << p.y << ", " << p.z
        << "] m in " << request.pose.header.frame_id << "; ";
-  answer.message = text.str() + leftText(num_left);
+  answer.message = text.str() + partsText(num_left) + " left.";
   return answer;
 }
 

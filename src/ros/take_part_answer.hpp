@@ -5,6 +5,7 @@
 #include <bin_picking_perception/TakePart.h>
 
 #include <cstddef>
+#include <string>
 
 #include "pickable_cell.hpp"
 #include "return_code.hpp"
@@ -12,6 +13,9 @@
 namespace bin_picking_ros
 {
 using TakePartResponse = bin_picking_perception::TakePart::Response;
+
+/// "1 part", "2 parts"
+std::string partsText(std::size_t count);
 
 /// \param id that was asked for
 TakePartResponse toAnswer(const PickOutcome& outcome, int id);

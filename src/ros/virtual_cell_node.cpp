@@ -101,8 +101,8 @@ void VirtualCellNode::fill()
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     std::ostringstream text;
     text.precision(3);
-    text << cell_->numLeft() << " parts rest in the bin of seed " << cell_->fillingSeed() << "; that took "
-         << seconds.count() << " s.";
+    text << "The bin of seed " << cell_->fillingSeed() << " holds " << partsText(cell_->numLeft())
+         << "; filling it took " << seconds.count() << " s.";
     setStatus(State::Ready, text.str());
   }
   catch (const Stopped&)
@@ -160,7 +160,7 @@ std::string VirtualCellNode::expose()
   const std::vector<float>& z = scan.scan.grid.z;
   const auto num_valid = std::count_if(z.begin(), z.end(), [](float depth) { return !std::isnan(depth); });
   return "Published a cloud with " + std::to_string(num_valid) + " of " + std::to_string(z.size()) +
-         " points measured; " + std::to_string(scan.instances.size()) + " parts are in the bin.";
+         " points measured; " + partsText(scan.instances.size()) + " in the bin.";
 }
 
 void VirtualCellNode::exposePeriodically()

@@ -6,8 +6,10 @@
 #include <algorithm>
 
 #include "bin_picking_perception/evaluation/pose_error.hpp"
+#include "bin_picking_perception/model/part.hpp"
 #include "cell_under_test.hpp"
 #include "pose_conversion.hpp"
+#include "return_code.hpp"
 
 namespace
 {
@@ -54,7 +56,7 @@ TEST(CellAndDetector, FoundPartsAreTrueAndTheTruthIsNotOverheard)
   ASSERT_TRUE(exposure.complete());
   ASSERT_EQ(exposure.truth->header.stamp, response.header.stamp);
 
-  const Eigen::Vector3d middle(0.03, 0.02, 0.012);
+  const auto tube = bin_picking::loadPart(std::string(BIN_PICKING_SOURCE_DIR) + "/config/parts/three_way_tube");
   std::size_t num_accepted = 0;
   for (const auto& detection : response.detections)
   {
@@ -65,8 +67,7 @@ TEST(CellAndDetector, FoundPartsAreTrueAndTheTruthIsNotOverheard)
     double rotation = M_PI;
     for (const auto& instance : exposure.truth->instances)
     {
-      const auto error = bin_picking::poseError(fromMessage(detection.pose), fromMessage(instance.pose),
-                                                bin_picking::Symmetry(), middle);
+      const auto error = bin_picking::poseError(fromMessage(detection.pose), fromMessage(instance.pose), tube.symmetry);
       if (error.translation < translation)
       {
         translation = error.translation;
