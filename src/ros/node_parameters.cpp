@@ -56,6 +56,8 @@ void NodeParameters::visit(bin_picking::ParameterVisitor& v)
   v.group("grasping", grasping);
 }
 
+// By value: older releases of xmlrpcpp read a value through functions that are not const.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
 NodeParameters parseNodeParameters(XmlRpcValue tree)
 {
   NodeParameters parameters;

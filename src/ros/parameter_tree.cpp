@@ -41,6 +41,8 @@ std::string scalarText(XmlRpcValue& value, const std::string& path)
   }
 }
 
+// By value: older releases of xmlrpcpp read a value through functions that are not const.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
 std::vector<std::pair<std::string, std::string>> flatten(XmlRpcValue tree, const std::string& prefix)
 {
   std::vector<std::pair<std::string, std::string>> leaves;
@@ -82,8 +84,11 @@ std::vector<std::string> readTexts(XmlRpcValue& value, const std::string& path, 
   for (int i = 0; i < value.size(); ++i)
   {
     if (value[i].getType() != XmlRpcValue::TypeString)
-      throw ParameterError("Entry " + std::to_string(i) + " of the parameter " + path +
-                           " is not a text; it must name " + wanted + ".");
+    {
+      std::ostringstream text;
+      text << "Entry " << i << " of the parameter " << path << " is not a text; it must name " << wanted << ".";
+      throw ParameterError(text.str());
+    }
     texts.push_back(static_cast<std::string&>(value[i]));
   }
   return texts;

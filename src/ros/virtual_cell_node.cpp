@@ -34,7 +34,7 @@ void checkRequest(const bin_picking_perception::TakePart::Request& request)
 }
 }  // namespace
 
-VirtualCellNode::VirtualCellNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
+VirtualCellNode::VirtualCellNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh)
     : frames_(nh), publisher_(nh, private_nh)
 {
   const bool is_readable = readParameters(private_nh);

@@ -30,7 +30,7 @@ class VirtualCellNode
 {
 public:
   /// Returns at once. Wrong parameters or files do not throw: the node stays, and its services tell what is wrong.
-  VirtualCellNode(ros::NodeHandle nh, ros::NodeHandle private_nh);
+  VirtualCellNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh);
   /// Ends a filling, waits for an exposure or a settling pile, joins all threads.
   ~VirtualCellNode();
   VirtualCellNode(const VirtualCellNode&) = delete;

@@ -78,6 +78,8 @@ void VirtualCellParameters::visit(bin_picking::ParameterVisitor& v)
   cell.visit(v);
 }
 
+// By value: older releases of xmlrpcpp read a value through functions that are not const.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
 VirtualCellParameters parseVirtualCellParameters(XmlRpcValue tree)
 {
   VirtualCellParameters parameters;
