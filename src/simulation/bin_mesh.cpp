@@ -35,7 +35,10 @@ TriangleMesh meshOf(const Bin& bin, double table_size)
   appendBox(mesh, {-half.x(), -outer.y(), 0}, {half.x(), -half.y(), top});
   appendBox(mesh, {-half.x(), half.y(), 0}, {half.x(), outer.y(), top});
   if (table_size > 0)
-    appendBox(mesh, {-table_size / 2, -table_size / 2, -wall - TABLE_THICKNESS}, {table_size / 2, table_size / 2, -wall});
+  {
+    const double edge = table_size / 2;
+    appendBox(mesh, {-edge, -edge, -wall - TABLE_THICKNESS}, {edge, edge, -wall});
+  }
   return mesh;
 }
 }  // namespace bin_picking::simulation

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <utility>
 
@@ -16,7 +15,7 @@ namespace bin_picking::simulation
 {
 namespace
 {
-constexpr int MAX_RETURNS = 3;  // of one part that ends outside
+constexpr int MAX_RETURNS = 4;  // of what ends outside
 
 std::vector<BulletShape> bulletShapes(const std::vector<std::shared_ptr<const RigidBodyShape>>& shapes)
 {
@@ -67,25 +66,28 @@ Pose BinPhysics::Impl::randomPlace(int shape, Random& random)
 bool BinPhysics::Impl::outside(const Pile::Item& item) const
 {
   const Eigen::Vector3d center = item.T_bin_body().translation();
-  const bool between_walls = std::abs(center.x()) <= 0.5 * inner_size.x() && std::abs(center.y()) <= 0.5 * inner_size.y();
-  return !(between_walls && center.z() >= 0);
+  const Eigen::Vector2d half = 0.5 * inner_size.head<2>();
+  const bool inside = std::abs(center.x()) <= half.x() && std::abs(center.y()) <= half.y() && center.z() >= 0;
+  return !inside;  // so is what is not finite
 }
 
 /// Waits until all rest, and drops again what has ended outside.
 void BinPhysics::Impl::bringBack(Random& random)
 {
-  std::map<int, int> returns;  // by id
-  for (;;)
+  for (int k = 0;; ++k)
   {
     pile->settle();
-    std::vector<Pile::Item>& items = pile->items();
-    const auto lost = std::find_if(items.begin(), items.end(), [this](const auto& item) { return outside(item); });
-    if (lost == items.end())
+    const auto lost = std::count_if(pile->items().begin(), pile->items().end(),
+                                    [this](const Pile::Item& item) { return outside(item); });
+    if (lost == 0)
       return;
-    if (++returns[lost->id] > MAX_RETURNS)
-      throw ParameterError("the bin is too full: of " + std::to_string(items.size()) +
-                           " parts one keeps falling out; drop fewer parts or take a larger bin");
-    pile->move(*lost, randomPlace(lost->shape, random));
+    if (k == MAX_RETURNS)
+      throw ParameterError("the bin is too full: " + std::to_string(lost) + " of " +
+                           std::to_string(pile->items().size()) +
+                           " parts keep falling out; drop fewer parts or take a larger bin");
+    for (Pile::Item& item : pile->items())
+      if (outside(item))
+        pile->move(item, randomPlace(item.shape, random));
   }
 }
 

@@ -40,7 +40,7 @@ public:
   /// Drops parts one after the other, at random places and attitudes, just above what lies there already, and waits
   /// until all rest. A part that ends outside is dropped again, a few times.
   /// \param shape_indices what to drop, in this order
-  /// \throws ParameterError the bin is too full: a part ends outside again and again, or parts lie above the rim. What
+  /// \throws ParameterError the bin is too full: parts end outside again and again, or lie above the rim. What
   ///   was dropped stays where it is until it is removed or cleared.
   void drop(const std::vector<int>& shape_indices, std::uint32_t seed, const Progress& progress = {});
 

@@ -54,7 +54,7 @@ private:
 
   Eigen::Vector3d inner_size_;
   PhysicsParameters parameters_;
-  std::vector<std::unique_ptr<StaticBox>> boxes_;  ///< before the world, which looks at its bodies once more when it goes
+  std::vector<std::unique_ptr<StaticBox>> boxes_;  ///< before the world, which touches its bodies when it goes
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;

@@ -31,8 +31,9 @@ Eigen::Matrix3d principalAxes(const Eigen::Matrix3d& inertia, Eigen::Vector3d& m
 
 btVector3 toBullet(const Eigen::Vector3d& metres)
 {
-  return btVector3(static_cast<btScalar>(metres.x() * UNITS_PER_METRE), static_cast<btScalar>(metres.y() * UNITS_PER_METRE),
-                   static_cast<btScalar>(metres.z() * UNITS_PER_METRE));
+  const Eigen::Vector3d units = metres * UNITS_PER_METRE;
+  return btVector3(static_cast<btScalar>(units.x()), static_cast<btScalar>(units.y()),
+                   static_cast<btScalar>(units.z()));
 }
 
 btTransform toBullet(const Pose& T)
@@ -59,7 +60,7 @@ Pose fromBullet(const btTransform& T)
 }
 
 BulletShape::BulletShape(const RigidBodyShape& shape)
-  : radius(shape.radius), compound(std::make_unique<btCompoundShape>())
+  : name(shape.name), radius(shape.radius), compound(std::make_unique<btCompoundShape>())
 {
   Eigen::Vector3d moments;
   T_object_body.linear() = principalAxes(shape.inertia, moments);

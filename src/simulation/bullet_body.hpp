@@ -6,6 +6,7 @@
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "bin_picking_perception/common/oriented_points.hpp"
@@ -25,6 +26,7 @@ struct BulletShape
 {
   explicit BulletShape(const RigidBodyShape& shape);
 
+  std::string name;  ///< for messages
   Pose T_object_body = Pose::Identity();
   btScalar mass = 0;
   btVector3 inertia;  ///< about the principal axes

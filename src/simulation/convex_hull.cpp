@@ -77,7 +77,7 @@ ConvexHull convexHull(const std::vector<Eigen::Vector3d>& points, double shrink)
     if (doubled_area.dot(corners[0] - middle) < 0)
       doubled_area = -doubled_area;
     if (doubled_area.norm() < 1e-14)
-      continue;
+      continue;  // no area, no plane
     const Eigen::Vector3d normal = doubled_area.normalized();
     hull.planes.emplace_back(normal.x(), normal.y(), normal.z(), -normal.dot(corners[0]));
     hull.volume += doubled_area.dot(corners[0] - middle) / 6;

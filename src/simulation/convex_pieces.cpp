@@ -2,10 +2,9 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "convex_pieces.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <queue>
 #include <tuple>
+#include <utility>
 
 #include "convex_hull.hpp"
 #include "mesh_cutting.hpp"
@@ -96,7 +95,9 @@ private:
   void propose(std::size_t a, std::size_t b)
   {
     constexpr double TOUCHING = 1e-6;  // metres
-    if (!pieces_[a].alive || !pieces_[b].alive || pieces_[a].box.squaredExteriorDistance(pieces_[b].box) > TOUCHING * TOUCHING)
+    if (!pieces_[a].alive || !pieces_[b].alive)
+      return;
+    if (pieces_[a].box.squaredExteriorDistance(pieces_[b].box) > TOUCHING * TOUCHING)
       return;
     const double volume = join(pieces_[a], pieces_[b]).hull.volume;
     unions_.push({volume - pieces_[a].hull.volume - pieces_[b].hull.volume, a, b});

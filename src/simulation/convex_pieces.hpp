@@ -14,13 +14,15 @@ using ConvexPiece = std::vector<Eigen::Vector3f>;
 
 struct ConvexPiecesParameters
 {
-  double max_filling = 0.02;  ///< depth to which a piece may fill hollows of the part, share of its diameter
+  /// Depth to which joining may fill hollows of the part, share of its diameter; measured to 1/64 of the part's longest
+  /// edge. Hollows within one block are filled.
+  double max_filling = 0.02;
   double block_size = 0.1;    ///< of the blocks from which pieces are put together, share of the diameter
 };
 
-/// Cuts a part into small blocks and joins neighbours to convex pieces as long as their hull fills little that is not the
-/// part. The hulls are those of exact pieces of the mesh: together they always cover it, so bodies whose pieces do not
-/// overlap do not overlap either.
+/// Cuts a part into small blocks and joins neighbours to convex pieces as long as their hull fills little that is not
+/// the part. The hulls are those of exact pieces of the mesh: together they cover it, but for the rounding of
+/// convexHull(), so bodies whose pieces do not overlap do not overlap either.
 /// \param mesh closed
 std::vector<ConvexPiece> convexPieces(const TriangleMesh& mesh, const ConvexPiecesParameters& parameters = {});
 }  // namespace bin_picking::simulation

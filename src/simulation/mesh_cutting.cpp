@@ -58,7 +58,8 @@ std::vector<double> flatFaces(const std::vector<Triangle>& surface, int axis, do
 }
 
 /// Inner cuts along one axis, ascending.
-std::vector<double> cutsAlong(const std::vector<Triangle>& surface, const Eigen::AlignedBox3d& box, int axis, double size)
+std::vector<double> cutsAlong(const std::vector<Triangle>& surface, const Eigen::AlignedBox3d& box, int axis,
+                              double size)
 {
   const double low = box.min()[axis];
   const double high = box.max()[axis];

@@ -23,7 +23,7 @@ struct Block
   std::vector<Eigen::Vector3d> corners;  ///< their hull is that of the block
 };
 
-/// Cuts the solid along planes of its axes: evenly, `size` apart, and along its largest flat faces. Blocks without a part
-/// of the solid are left out.
+/// Cuts the solid along planes of its axes: evenly, `size` apart, and along its largest flat faces. Blocks without a
+/// part of the solid are left out.
 std::vector<Block> cutIntoBlocks(const TriangleMesh& mesh, double size);
 }  // namespace bin_picking::simulation

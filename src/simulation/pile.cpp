@@ -124,6 +124,8 @@ double Pile::movedSince(const std::vector<Pose>& before) const
   const std::vector<Pose> now = poses();
   for (std::size_t k = 0; k < items_.size(); ++k)
   {
+    if (now[k].translation().z() < 0)
+      continue;  // fallen out of the bin, it falls for ever
     const double angle = Eigen::AngleAxisd(now[k].linear() * before[k].linear().transpose()).angle();
     farthest = std::max(farthest, (now[k].translation() - before[k].translation()).norm() +
                                       angle * shapeOf(items_[k]).radius);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "bin_picking_perception/model/mesh.hpp"
@@ -13,6 +14,7 @@ namespace bin_picking::simulation
 /// What the physics needs of a part.
 struct RigidBodyShape
 {
+  std::string name = "part";        ///< for messages
   std::vector<ConvexPiece> pieces;  ///< together they cover the part; see convexPieces()
   double volume = 0;                ///< cubic metres
   Eigen::Vector3d center_of_mass = Eigen::Vector3d::Zero();  ///< of the solid at even density, part frame

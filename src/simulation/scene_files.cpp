@@ -86,6 +86,13 @@ std::string toYaml(const Bin& bin)
   return out.str();
 }
 
+bool holdsVirtualScene(const std::string& folder)
+{
+  std::ifstream file(fs::path(folder) / "truth.json");
+  const Json truth = Json::parse(file, nullptr, false);
+  return truth.is_object() && truth.contains("seed") && truth.contains("sensor");
+}
+
 void writeScene(const CellScan& scan, const VirtualCell& cell, std::uint32_t seed, const std::string& folder)
 {
   const fs::path path(folder);

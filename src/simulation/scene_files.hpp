@@ -14,6 +14,9 @@ namespace bin_picking::simulation
 /// \param seed as recorded in the truth. \throws FileError
 void writeScene(const CellScan& scan, const VirtualCell& cell, std::uint32_t seed, const std::string& folder);
 
+/// Whether a folder holds a scene that writeScene has written; a truth that a person wrote lacks the seed.
+bool holdsVirtualScene(const std::string& folder);
+
 /// A bin as bin files have it (see loadBin).
 std::string toYaml(const Bin& bin);
 }  // namespace bin_picking::simulation

@@ -15,7 +15,6 @@ namespace bin_picking::simulation
 {
 namespace
 {
-constexpr int MAX_PARTS = 60;
 constexpr double MAX_OVERLAP = 0.001;  // metres, between the surfaces of two parts at rest
 constexpr int MAX_CORRECTIONS = 12;    // of one filling
 
@@ -26,13 +25,21 @@ std::vector<CellPart> checked(std::vector<CellPart> parts)
   return parts;
 }
 
+CellParameters checked(const CellParameters& parameters)
+{
+  checkRanges(parameters);
+  return parameters;
+}
+
 std::vector<std::shared_ptr<const RigidBodyShape>> rigidBodies(const std::vector<CellPart>& parts)
 {
   std::vector<std::shared_ptr<const RigidBodyShape>> bodies;
   for (const CellPart& part : parts)
     try
     {
-      bodies.push_back(std::make_shared<RigidBodyShape>(makeRigidBodyShape(*part.mesh)));
+      auto body = std::make_shared<RigidBodyShape>(makeRigidBodyShape(*part.mesh));
+      body->name = part.name;
+      bodies.push_back(std::move(body));
     }
     catch (const ParameterError& error)
     {
@@ -68,12 +75,11 @@ std::vector<int> shuffled(const std::vector<int>& counts, std::uint32_t seed)
 }  // namespace
 
 VirtualCell::VirtualCell(std::vector<CellPart> parts, const CellParameters& parameters, int num_threads)
-  : parts_(checked(std::move(parts))), parameters_(parameters), bin_(makeBin(parameters.layout)),
+  : parts_(checked(std::move(parts))), parameters_(checked(parameters)), bin_(makeBin(parameters.layout)),
     bin_mesh_(std::make_shared<TriangleMesh>(meshOf(bin_, parameters.layout.table_size))),
     physics_(rigidBodies(parts_), bin_.inner_size, parameters.physics), sensor_(parameters.sensor, num_threads),
     executor_(num_threads)
 {
-  checkRanges(parameters_);
   for (const CellPart& part : parts_)
     overlap_shapes_.push_back(std::make_unique<OverlapShape>(part.mesh));
 }
@@ -81,36 +87,45 @@ VirtualCell::VirtualCell(std::vector<CellPart> parts, const CellParameters& para
 void VirtualCell::fill(const std::vector<int>& counts, std::uint32_t seed, const BinPhysics::Progress& progress)
 {
   const bool sensible = counts.size() == parts_.size() && *std::min_element(counts.begin(), counts.end()) >= 0;
-  const int total = std::accumulate(counts.begin(), counts.end(), 0);
-  if (!sensible || total < 1)
+  const auto total = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+  if (!sensible || total == 0)
     throw ParameterError("a count for each of the " + std::to_string(parts_.size()) +
                          " kinds of parts is needed, 0 or more, and not all may be 0");
-  const auto already = static_cast<int>(physics_.bodies().size());
-  if (already + total > MAX_PARTS)
+  const std::size_t already = physics_.bodies().size();
+  if (already + total > MAX_CELL_PARTS)
     throw ParameterError("the bin would hold " + std::to_string(already + total) + " parts, but " +
-                         std::to_string(MAX_PARTS) + " is the most");
+                         std::to_string(MAX_CELL_PARTS) + " is the most");
   physics_.drop(shuffled(counts, seed), seed, progress);
   separate(seed);
+}
+
+bool VirtualCell::dropAgain(int id, std::uint32_t seed)
+{
+  if (!physics_.dropAgain(id, seed))
+    return false;
+  separate(seed);
+  return true;
 }
 
 /// The physics works with bodies a little simpler than the parts. Where that let two parts overlap, the upper one is
 /// dropped again.
 void VirtualCell::separate(std::uint32_t seed)
 {
-  for (std::uint32_t k = 1; k <= MAX_CORRECTIONS; ++k)
+  Overlap overlap = deepestOverlap();
+  for (std::uint32_t k = 1; k <= MAX_CORRECTIONS && overlap.depth > MAX_OVERLAP; ++k)
   {
-    const Overlap overlap = deepestOverlap();
-    if (overlap.depth <= MAX_OVERLAP)
-      return;
     const std::vector<Body> all = bodies();
     const Body& first = all[overlap.first];
     const Body& second = all[overlap.second];
     const bool first_is_upper = first.T_bin_object.translation().z() > second.T_bin_object.translation().z();
     physics_.dropAgain(first_is_upper ? first.id : second.id, seed + k);
+    overlap = deepestOverlap();
   }
-  throw ParameterError("two parts still overlap by more than " + std::to_string(1000 * MAX_OVERLAP) + " mm after " +
-                       std::to_string(MAX_CORRECTIONS) +
-                       " corrections; take a shorter physics/time_step, fewer parts or a larger bin");
+  if (overlap.depth > MAX_OVERLAP)
+    throw ParameterError("two parts still overlap by " + std::to_string(1000 * overlap.depth) +
+                         " mm after " + std::to_string(MAX_CORRECTIONS) +
+                         " corrections, but 1 mm is the most; take a shorter physics/time_step, fewer parts or a "
+                         "larger bin");
 }
 
 Overlap VirtualCell::deepestOverlap() const

@@ -17,6 +17,8 @@
 
 namespace bin_picking::simulation
 {
+constexpr std::size_t MAX_CELL_PARTS = 60;
+
 /// Inner measures of the bin, and how the camera hangs over it.
 struct CellLayout
 {
@@ -67,15 +69,17 @@ struct CellScan
 class VirtualCell
 {
 public:
-  /// \throws ParameterError no parts, a parameter out of its range, a mesh that is not closed, a part larger than the bin
+  /// \throws ParameterError no parts, a parameter out of its range, a mesh that is not closed, a part larger than the
+  ///   bin
   VirtualCell(std::vector<CellPart> parts, const CellParameters& parameters, int num_threads = 0);
 
   /// Drops counts[k] parts of kind k, mixed at random, on top of what is there; returns when all rest.
-  /// \throws ParameterError counts that do not fit the parts, none or more than 60 parts in all, a bin too full
+  /// \throws ParameterError counts that do not fit the parts, none or more than MAX_CELL_PARTS parts in all, a bin too full; in the
+  ///   last case what was dropped stays in the bin
   void fill(const std::vector<int>& counts, std::uint32_t seed, const BinPhysics::Progress& progress = {});
 
-  /// The two parts that reach deepest into each other, by their true meshes: indices into bodies(). Never more than 1 mm
-  /// after fill().
+  /// The two parts that reach deepest into each other, by their true meshes: indices into bodies(). Never more than
+  /// 1 mm after fill() and dropAgain().
   Overlap deepestOverlap() const;
 
   /// One exposure. The seed is that of the noise.
@@ -83,7 +87,7 @@ public:
 
   /// See BinPhysics.
   bool remove(int id) { return physics_.remove(id); }
-  bool dropAgain(int id, std::uint32_t seed) { return physics_.dropAgain(id, seed); }
+  bool dropAgain(int id, std::uint32_t seed);
   void clear() { physics_.clear(); }
 
   /// Ids, kinds and poses T_bin_object of what lies in the bin.

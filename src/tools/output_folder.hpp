@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,9 @@ namespace bin_picking::tools
 class OutputFolder
 {
 public:
-  /// \param replaceable an existing folder may be replaced if it is empty or holds one of these
+  /// \param is_ours whether a folder holds earlier output and nothing else, so that it may be replaced; empty ones may
   /// \throws FileError the name is taken by something else, or the folder cannot be made
-  OutputFolder(const std::string& name, const std::vector<std::string>& replaceable);
+  OutputFolder(const std::string& name, const std::function<bool(const std::filesystem::path&)>& is_ours);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -26,7 +27,10 @@ public:
   void publish();
 
 private:
+  std::filesystem::path beside(const std::string& purpose) const;
+
   std::filesystem::path target_;
   std::filesystem::path partial_;
+  std::vector<std::filesystem::path> made_;  ///< folders above it that were missing, the innermost first
 };
 }  // namespace bin_picking::tools

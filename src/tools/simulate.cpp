@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <numeric>
@@ -25,7 +26,7 @@ using simulation::CellScan;
 using simulation::VirtualCell;
 
 constexpr int DEFAULT_COUNT = 25;
-constexpr int MAX_COUNT = 60;
+constexpr int MAX_COUNT = simulation::MAX_CELL_PARTS;
 
 CellParameters cellParameters(const Arguments& arguments)
 {
@@ -52,8 +53,12 @@ std::vector<PartDefinition> loadParts(const Arguments& arguments)
   for (const std::string& path : arguments.positionals())
   {
     parts.push_back(loadPart(path));
-    if (!names.insert(parts.back().name).second)
-      throw UsageError("the part '" + parts.back().name + "' was given twice; parts are told apart by name");
+    const std::string& name = parts.back().name;
+    if (fs::path(name).filename() != name || name == "." || name == "..")
+      throw FileError("the part's name '" + name + "' cannot be that of a folder; change it in '" +
+                      parts.back().files.front() + "'");
+    if (!names.insert(name).second)
+      throw UsageError("the part '" + name + "' was given twice; parts are told apart by name");
   }
   return parts;
 }
@@ -62,33 +67,42 @@ std::vector<simulation::CellPart> cellParts(const std::vector<PartDefinition>& d
 {
   std::vector<simulation::CellPart> parts;
   for (const PartDefinition& definition : definitions)
-    parts.push_back(
-        {definition.name, std::make_shared<TriangleMesh>(loadMesh(definition.mesh_file, definition.mesh_unit))});
+  {
+    auto mesh = std::make_shared<const TriangleMesh>(loadMesh(definition.mesh_file, definition.mesh_unit));
+    checkExpectedSize(definition, inspectMesh(*mesh).size);
+    parts.push_back({definition.name, std::move(mesh)});
+  }
   return parts;
 }
 
 /// One number for all kinds together is shared out evenly, the first kinds taking what is left over.
+std::vector<int> sharedOut(int total, std::size_t kinds)
+{
+  std::vector<int> counts(kinds, total / static_cast<int>(kinds));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(total) % kinds; ++k)
+    ++counts[k];
+  return counts;
+}
+
 std::vector<int> countsOf(const Arguments& arguments, std::size_t kinds)
 {
-  std::vector<int> counts;
+  if (arguments.has("--empty") && arguments.has("--count"))
+    throw UsageError("--empty and --count exclude each other; keep one of them");
   if (arguments.has("--empty"))
-  {
-    if (arguments.has("--count"))
-      throw UsageError("--empty and --count exclude each other; keep one of them");
     return std::vector<int>(kinds, 0);
-  }
+  if (!arguments.has("--count"))
+    return sharedOut(DEFAULT_COUNT, kinds);
+  std::vector<int> counts;
   for (const std::string& text : arguments.values("--count"))
-    counts.push_back(parseInteger(text, "--count", counts.empty() && kinds == 1 ? 1 : 0, MAX_COUNT));
-  if (counts.size() == kinds && kinds > 1)
-    return counts;
-  if (counts.size() > 1)
+    counts.push_back(parseInteger(text, "--count", 0, MAX_COUNT));
+  if (counts.size() != 1 && counts.size() != kinds)
     throw UsageError("--count has " + std::to_string(counts.size()) + " numbers for " + std::to_string(kinds) +
-                     " parts; give one number in all, or one for each part");
-  const int total = counts.empty() ? DEFAULT_COUNT : counts[0];
-  std::vector<int> shared(kinds, total / static_cast<int>(kinds));
-  for (std::size_t k = 0; k < static_cast<std::size_t>(total) % kinds; ++k)
-    ++shared[k];
-  return shared;
+                     (kinds == 1 ? " part" : " parts") + "; give one number in all, or one for each part");
+  const int total = std::accumulate(counts.begin(), counts.end(), 0);
+  if (total < 1 || total > MAX_COUNT)
+    throw UsageError("--count asks for " + std::to_string(total) + " parts in all, but it must lie in [1, " +
+                     std::to_string(MAX_COUNT) + "]; --empty leaves the bin empty");
+  return counts.size() == 1 ? sharedOut(total, kinds) : counts;
 }
 
 /// So that the data set can be evaluated without anything else.
@@ -96,12 +110,34 @@ void copyParts(const std::vector<PartDefinition>& parts, const fs::path& folder)
 {
   for (const PartDefinition& part : parts)
   {
-    const fs::path target = folder / "parts" / part.name;
-    const fs::path mesh = fs::relative(part.mesh_file, part.directory);
-    fs::create_directories((target / mesh).parent_path());
-    fs::copy_file(fs::path(part.directory) / "part.yaml", target / "part.yaml");
-    fs::copy_file(part.mesh_file, target / mesh);
+    const fs::path source = fs::absolute(part.directory).lexically_normal();
+    for (const std::string& file : part.files)
+    {
+      const fs::path inside = fs::absolute(file).lexically_normal().lexically_relative(source);
+      if (*inside.begin() == "..")
+        throw FileError("'" + file + "' lies outside the folder of the part '" + part.name +
+                        "', so that the data set cannot hold a copy of it; move it into '" + part.directory + "'");
+      const fs::path name = file == part.files.front() ? "part.yaml" : inside;
+      const fs::path target = folder / "parts" / part.name / name;
+      fs::create_directories(target.parent_path());
+      fs::copy_file(file, target, fs::copy_options::overwrite_existing);
+    }
   }
+}
+
+/// Whether a folder holds what this command writes, and nothing else.
+bool isOurs(const fs::path& folder)
+{
+  const std::set<std::string> known = {"scene.pcd", "bin.yaml", "camera.json", "truth.json", "scene.png", "parts"};
+  const std::string scene = "scene_";
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+  {
+    const std::string name = entry.path().filename().string();
+    if (known.count(name) == 0 && name.compare(0, scene.size(), scene) != 0)
+      return false;
+  }
+  return simulation::holdsVirtualScene(folder.string()) ||
+         simulation::holdsVirtualScene((folder / "scene_0001").string());
 }
 
 std::string sceneName(int number)
@@ -116,7 +152,7 @@ void report(const CellScan& scan, const VirtualCell& cell, const std::string& na
   const auto visible = std::count_if(scan.instances.begin(), scan.instances.end(),
                                      [](const auto& instance) { return instance.view.visible_fraction >= 0.5; });
   const DepthGrid& grid = scan.scan.grid;
-  const auto valid = std::count_if(grid.z.begin(), grid.z.end(), [](float z) { return z == z; });
+  const auto valid = std::count_if(grid.z.begin(), grid.z.end(), [](float z) { return std::isfinite(z); });
   std::cout << name << ": " << scan.instances.size() << " parts, " << visible << " at least half visible, deepest overlap "
             << fixed(1000 * cell.deepestOverlap().depth, 2) << " mm, "
             << fixed(100.0 * static_cast<double>(valid) / static_cast<double>(grid.size()), 1)
@@ -130,11 +166,11 @@ void simulate(const Arguments& arguments)
   const std::vector<int> counts = countsOf(arguments, parts.size());
   const int seed = parseInteger(arguments.value("--seed", "1"), "--seed", 0, 2147483647 - 100000);
   const int scenes = parseInteger(arguments.value("--scenes", "1"), "--scenes", 1, 100000);
-  OutputFolder output(arguments.value("-o"), {"scene.pcd", "scene_0001/scene.pcd"});
+  OutputFolder output(arguments.value("-o"), isOurs);
+  copyParts(parts, output.path());
   Progress progress;
   progress.show("preparing the parts");
   VirtualCell cell(cellParts(parts), parameters, parseInteger(arguments.value("--threads", "0"), "--threads", 0, 256));
-  copyParts(parts, output.path());
   for (int k = 0; k < scenes; ++k)
   {
     const Stopwatch watch;

@@ -58,6 +58,61 @@ inline TriangleMesh sphereMesh(float radius, int levels)
   return mesh;
 }
 
+/// Four corners, counter-clockwise from outside.
+inline void appendQuad(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d)
+{
+  mesh.triangles.push_back({a, b, c});
+  mesh.triangles.push_back({a, c, d});
+}
+
+/// A tube about the z axis, between z = 0 and its height, with so many flat sides.
+inline TriangleMesh tubeMesh(float outer_radius, float inner_radius, float height, int sides)
+{
+  TriangleMesh mesh;
+  for (int k = 0; k < sides; ++k)
+  {
+    const auto angle = static_cast<float>(2 * M_PI * k / sides);
+    for (const float radius : {outer_radius, inner_radius})
+      for (const float z : {0.0f, height})
+        mesh.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+  }
+  const auto count = static_cast<std::uint32_t>(sides);
+  for (std::uint32_t k = 0; k < count; ++k)
+  {
+    const std::uint32_t a = 4 * k;  // outer low, outer high, inner low, inner high
+    const std::uint32_t b = 4 * ((k + 1) % count);
+    appendQuad(mesh, a, b, b + 1, a + 1);
+    appendQuad(mesh, a + 2, a + 3, b + 3, b + 2);
+    appendQuad(mesh, a + 1, b + 1, b + 3, a + 3);
+    appendQuad(mesh, a, a + 2, b + 2, b);
+  }
+  return mesh;
+}
+
+/// An angle of two legs along x and y with the outer edge on the z axis, between z = 0 and its width.
+inline TriangleMesh angleMesh(float leg, float thickness, float width)
+{
+  TriangleMesh mesh;
+  for (const float z : {0.0f, width})
+    for (const auto& [x, y] : {std::pair<float, float>{0, 0}, {leg, 0}, {leg, thickness}, {thickness, thickness},
+                               {thickness, leg}, {0, leg}})
+      mesh.vertices.emplace_back(x, y, z);
+  appendQuad(mesh, 0, 3, 2, 1);
+  appendQuad(mesh, 0, 5, 4, 3);
+  appendQuad(mesh, 6, 7, 8, 9);
+  appendQuad(mesh, 6, 9, 10, 11);
+  for (std::uint32_t k = 0; k < 6; ++k)
+    appendQuad(mesh, k, (k + 1) % 6, (k + 1) % 6 + 6, k + 6);
+  return mesh;
+}
+
+inline TriangleMesh moved(TriangleMesh mesh, const Pose& T)
+{
+  for (Eigen::Vector3f& vertex : mesh.vertices)
+    vertex = (T * vertex.cast<double>()).cast<float>();
+  return mesh;
+}
+
 inline std::string binaryStl(const TriangleMesh& mesh, const std::string& title)
 {
   std::string file = title;

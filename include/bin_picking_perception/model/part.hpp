@@ -64,6 +64,7 @@ struct PartDefinition
   Symmetry symmetry;
   std::vector<GraspDefinition> grasps;
   std::string training_yaml;  ///< the `training:` map as text, to be applied over the preset; may be empty
+  std::vector<std::string> files;  ///< all that make up the part: its part.yaml first, then those that it names
 };
 
 /// Reads DIRECTORY/part.yaml (or a part.yaml given by name).

@@ -74,10 +74,11 @@ PartDefinition loadPart(const std::string& path)
   part.directory = file.has_parent_path() ? file.parent_path().string() : ".";
   part.name = yaml.text("name");
   readMesh(yaml.map("mesh"), part);
+  part.files = {file.string(), part.mesh_file};
   if (yaml.has("expected_size"))
     part.expected_size = readExpectedSize(yaml);
   if (yaml.has("symmetry"))
-    part.symmetry = readSymmetry(yaml.map("symmetry"), part.directory);
+    part.symmetry = readSymmetry(yaml.map("symmetry"), part);
   if (yaml.has("training"))
     part.training_yaml = readTraining(yaml, file.string());
   if (yaml.has("grasps"))

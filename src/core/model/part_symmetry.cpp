@@ -34,28 +34,29 @@ Pose readRotation(const YamlMap& yaml)
 }
 
 /// From a file of the BOP benchmark that describes the same mesh.
-Symmetry readFromModelsInfo(const YamlMap& yaml, const std::filesystem::path& directory)
+Symmetry readFromModelsInfo(const YamlMap& yaml, PartDefinition& part)
 {
   yaml.allowKeys({"file", "id"});
-  const std::string file = (directory / yaml.text("file")).string();
+  const std::string file = (std::filesystem::path(part.directory) / yaml.text("file")).string();
   const int id = yaml.integer("id");
   const auto models = loadModelsInfo(file);
   const auto found = models.find(id);
   if (found == models.end())
     yaml.fail("id", "'" + file + "' has no model " + std::to_string(id) + "; its ids lie in [" +
                         std::to_string(models.begin()->first) + ", " + std::to_string(models.rbegin()->first) + "]");
+  part.files.push_back(file);
   return found->second.symmetry;
 }
 }  // namespace
 
-Symmetry readSymmetry(const YamlMap& yaml, const std::string& directory)
+Symmetry readSymmetry(const YamlMap& yaml, PartDefinition& part)
 {
   yaml.allowKeys({"discrete", "continuous", "models_info"});
   if (yaml.has("models_info"))
   {
     if (yaml.has("discrete") || yaml.has("continuous"))
       yaml.fail("models_info", "the symmetry is given twice; keep 'models_info', or 'discrete' and 'continuous'");
-    return readFromModelsInfo(yaml.map("models_info"), directory);
+    return readFromModelsInfo(yaml.map("models_info"), part);
   }
   std::optional<Symmetry::Axis> axis;
   if (yaml.has("continuous"))
