@@ -10,8 +10,10 @@
 
 #include "bin_picking_perception/common/oriented_points.hpp"
 #include "bin_picking_perception/model/curvature_classes.hpp"
+#include "bin_picking_perception/model/distance_field.hpp"
 #include "bin_picking_perception/model/feature_table.hpp"
 #include "bin_picking_perception/model/mesh.hpp"
+#include "bin_picking_perception/model/near_symmetry.hpp"
 #include "bin_picking_perception/model/part.hpp"
 #include "bin_picking_perception/model/training_parameters.hpp"
 
@@ -43,7 +45,13 @@ struct TrainedModel
   std::vector<ViewTemplate> views;
   CurvatureClasses classes;
   FeatureTable table;
+  // Made from the surface whenever a model is trained or loaded (prepareComparison), not stored:
+  DistanceField field;
+  std::vector<NearSymmetry> near_symmetries;
 };
+
+/// Fills `field` and `near_symmetries` from the mesh, or from the surface points of a part without one.
+void prepareComparison(TrainedModel& model, const Executor& executor);
 
 /// The offline phase for a mesh file or a point model. `definition.mesh_file` and `mesh_unit` are read; symmetry and the
 /// training overrides are taken from the definition.

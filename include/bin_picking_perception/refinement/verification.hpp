@@ -7,6 +7,7 @@
 #include "bin_picking_perception/common/oriented_points.hpp"
 #include "bin_picking_perception/common/parameters.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
+#include "bin_picking_perception/scene/bin.hpp"
 #include "bin_picking_perception/scene/depth_grid.hpp"
 
 namespace bin_picking
@@ -25,6 +26,8 @@ struct VerificationParameters
   double min_inlier_share = 0.6;
   double max_violation_share = 0.2;
   double unmeasured_weight = 0.3;
+  double min_turn_margin = 10;
+  double max_bin_penetration = 0.006;
   double overlap = 0.35;
   int max_refined = 80;
 
@@ -95,6 +98,9 @@ OutlineEvidence gatherOutlineEvidence(const OrientedPoints& visible, const Pose&
 /// \param scale raw pixels per pixel of this grid, so that poses found on different reductions can be compared
 /// \param cell edge of a cell in raw pixels; wider than the spacing of the points that were tested
 std::vector<int> coveredCells(const std::vector<int>& pixels, int grid_width, int scale, int cell);
+
+/// How deep a pose reaches through the bin's floor or, below the rim, through its walls, metres; 0 if it does not.
+double binPenetration(const OrientedPoints& surface, const Pose& T_camera_object, const Bin& bin);
 
 /// Equation 9: the share of `object_points` that have a model point within `distance`. 0 for no points.
 double matchingRate(const OrientedPoints& model_surface, const Pose& T_camera_object,

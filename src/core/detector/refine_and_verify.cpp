@@ -5,6 +5,7 @@
 
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/refinement/icp.hpp"
+#include "bin_picking_perception/refinement/rivals.hpp"
 #include "../common/parameter_text.hpp"
 #include "stages.hpp"
 
@@ -75,29 +76,43 @@ IcpResult refine(const Hypothetical& pose, const PreparedScene& scene, const Tra
   return unchanged;
 }
 
-void judge(Detection& detection, const PoseEvidence& evidence, const OutlineEvidence& outline,
+/// The first criterion that fails is the reason of the rejection.
+void require(Detection& detection, const Criterion& criterion)
+{
+  if (!criterion.passed() && detection.rejection.empty())
+    detection.rejection = failureText(criterion);
+  detection.criteria.push_back(criterion);
+}
+
+void judge(Detection& detection, const PoseEvidence& evidence, const OutlineEvidence& outline, double turn_margin,
            const VerificationParameters& parameters)
 {
-  detection.criteria.push_back({"matching_rate", detection.matching_rate, parameters.min_matching_rate, false});
+  require(detection, {"matching_rate", detection.matching_rate, parameters.min_matching_rate, false});
   if (parameters.enabled)
   {
-    detection.criteria.push_back(
-        {"inlier_share", evidence.inlierShare(parameters.unmeasured_weight), parameters.min_inlier_share, false});
-    detection.criteria.push_back({"visible_fraction", detection.visible_fraction, parameters.min_visible_fraction, false});
-    detection.criteria.push_back({"violation_share", evidence.violationShare(), parameters.max_violation_share, true});
-    detection.criteria.push_back({"score", detection.score, parameters.min_score, false});
-    detection.criteria.push_back({"outline_share", outline.share(), parameters.min_outline_share, false});
+    require(detection, {"inlier_share", evidence.inlierShare(parameters.unmeasured_weight), parameters.min_inlier_share, false});
+    require(detection, {"visible_fraction", detection.visible_fraction, parameters.min_visible_fraction, false});
+    require(detection, {"violation_share", evidence.violationShare(), parameters.max_violation_share, true});
+    require(detection, {"score", detection.score, parameters.min_score, false});
+    require(detection, {"outline_share", outline.share(), parameters.min_outline_share, false});
+    if (std::isfinite(turn_margin))
+      require(detection, {"turn_margin", turn_margin, parameters.min_turn_margin, false});
   }
-  for (const auto& criterion : detection.criteria)
-    if (!criterion.passed() && detection.rejection.empty())
-      detection.rejection = failureText(criterion);
 }
 
 Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
                 const DetectorParameters& parameters, int comparison_cell)
 {
   const VerificationParameters& verification = parameters.verification;
-  const IcpResult refined = refine(pose, scene, model, parameters.icp);
+  IcpResult refined = refine(pose, scene, model, parameters.icp);
+  RivalChoice choice;
+  if (verification.enabled)
+  {
+    choice = chooseAmongRivals(model, refined.T_camera_object, scene.grid, scene.surroundings,
+                               tolerance(scene, model, verification));
+    if (choice.turned)
+      refined = refine({choice.T_camera_object, pose.votes, pose.region}, scene, model, parameters.icp);
+  }
   Assessed assessed;
   Detection& detection = assessed.detection;
   detection.part = model.name;
@@ -117,7 +132,10 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
                                              verification.match_distance) :
                                 evidence.matchingRate();
   detection.score = verification.enabled ? score(evidence, outline.share(), verification) : detection.matching_rate;
-  judge(detection, evidence, outline, verification);
+  judge(detection, evidence, outline, choice.margin, verification);
+  if (verification.enabled && scene.bin)
+    require(detection, {"bin_penetration", binPenetration(model.surface, refined.T_camera_object, *scene.bin),
+                        verification.max_bin_penetration, true});
   assessed.cells = coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell);
   return assessed;
 }

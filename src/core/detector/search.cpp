@@ -14,6 +14,8 @@ PreparedScene reduceScene(const DepthGrid& raw, const Bin* bin, const TrainedMod
                           StageClock& clock)
 {
   PreparedScene scene;
+  if (bin)
+    scene.bin = *bin;
   scene.reduction = reductionFactor(raw, model.parameters.leaf, parameters.preprocessing);
   scene.surroundings = reduceGrid(raw, scene.reduction);
   clock.lap("reduction");

@@ -231,6 +231,7 @@ std::shared_ptr<const TrainedModel> readPayload(const char* begin, std::size_t s
   model->classes.high_min = in.value<double>();
   model->table = ModelFileAccess::read(in, model->points.size());
   require(in.left() == 0, "there are more data than a model has");
+  prepareComparison(*model, Executor(0));
   return model;
 }
 }  // namespace bin_picking

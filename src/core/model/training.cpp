@@ -153,6 +153,17 @@ void checkPoints(const TrainedModel& model)
 }
 }  // namespace
 
+void prepareComparison(TrainedModel& model, const Executor& executor)
+{
+  const double leaf = model.parameters.leaf;
+  const double cell = leaf / 3;
+  const double band = 1.5 * leaf;
+  const double kept = 0.35 * leaf;  // of the surface that a turn moves by less
+  const OrientedPoints dense = model.mesh.empty() ? model.surface : sampleSurface(model.mesh, cell / 2, static_cast<std::uint32_t>(model.parameters.seed));
+  model.field = DistanceField(dense, cell, band, executor);
+  model.near_symmetries = findNearSymmetries(model.surface, model.field, model.symmetry, kept);
+}
+
 std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, const TrainingParameters& parameters,
                                               const Executor& executor,
                                               const std::function<void(const std::string&)>& progress)
@@ -189,6 +200,8 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
   model->parameters.d_cur = quantizer.curvature_step;
   model->table =
       FeatureTable(model->points, classes, visibility, static_cast<int>(words), quantizer, p.min_pair_distance, executor);
+  report("near symmetries");
+  prepareComparison(*model, executor);
   return model;
 }
 }  // namespace bin_picking

@@ -29,6 +29,12 @@ void VerificationParameters::visit(ParameterVisitor& v)
   v.field({"min_score", "", "smallest accepted score: inlier share, visible fraction and outline share together", 0, 1}, min_score);
   v.field({"unmeasured_weight", "", "how much a point without data speaks against a pose, compared to a contradicted one", 0, 1},
           unmeasured_weight);
+  v.field({"min_turn_margin", "", "a pose is ambiguous if another one, turned so that most of the part looks the same, is "
+                                  "contradicted by less than this more, in squares of a leaf's edge; 0 accepts guesses", 0, 1000},
+          min_turn_margin);
+  v.field({"max_bin_penetration", "m", "how deep a pose may reach through the floor or a wall of the given bin; as much as the "
+                                       "bin's pose may be wrong", 0, 1},
+          max_bin_penetration);
   v.field({"overlap", "", "a detection that shares more than this part of its pixels with better ones is dropped", 0.01, 1}, overlap);
   v.field({"max_refined", "", "clusters that are refined and tested in full, best first", 1, 10000}, max_refined);
 }
@@ -219,6 +225,22 @@ PoseEvidence gatherEvidence(const OrientedPoints& facing, const Pose& T_camera_o
   std::sort(evidence.pixels.begin(), evidence.pixels.end());
   evidence.pixels.erase(std::unique(evidence.pixels.begin(), evidence.pixels.end()), evidence.pixels.end());
   return evidence;
+}
+
+double binPenetration(const OrientedPoints& surface, const Pose& T_camera_object, const Bin& bin)
+{
+  const Eigen::Isometry3f T_bin_object = (bin.T_camera_bin.inverse() * T_camera_object).cast<float>();
+  const Eigen::Array3f size = bin.inner_size.cast<float>();
+  float deepest = 0;
+  for (const Eigen::Vector3f& point : surface.points)
+  {
+    const Eigen::Vector3f p = T_bin_object * point;
+    deepest = std::max(deepest, -p.z());
+    // What is outside of a wall but higher than its rim leans over it; what is just below may have come over it too.
+    const float through_wall = (p.head<2>().array().abs() - 0.5f * size.head<2>()).maxCoeff();
+    deepest = std::max(deepest, std::min(through_wall, size.z() - p.z()));
+  }
+  return static_cast<double>(deepest);
 }
 
 double matchingRate(const OrientedPoints& model_surface, const Pose& T_camera_object,

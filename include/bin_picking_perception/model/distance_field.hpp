@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "bin_picking_perception/common/oriented_points.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
+
+namespace bin_picking
+{
+/// Signed distance to a part's surface on a regular grid: positive outside. Made once, read in a few nanoseconds. Metres,
+/// part frame. Immutable; safe to read from many threads.
+class DistanceField
+{
+public:
+  DistanceField() = default;
+
+  /// \param surface dense: nearest neighbours about half a cell apart
+  /// \param cell edge of the grid's cells, metres; the distance is exact to about a quarter of it
+  /// \param band greater distances are cut to it, metres; several cells
+  DistanceField(const OrientedPoints& surface, double cell, double band, const Executor& executor);
+
+  bool empty() const { return values_.empty(); }
+  float band() const { return band_; }
+
+  /// In [-band, band]; band outside of the grid.
+  float at(const Eigen::Vector3f& p) const
+  {
+    const Eigen::Array3f q = (p - low_).array() * inverse_cell_;
+    if ((q < 0).any() || (q >= limit_).any())
+      return band_;
+    const Eigen::Array3i i = q.cast<int>();
+    const Eigen::Array3f f = q - i.cast<float>();
+    const std::size_t k = (static_cast<std::size_t>(i.z()) * rows_ + static_cast<std::size_t>(i.y())) * columns_ +
+                          static_cast<std::size_t>(i.x());
+    const std::size_t up = rows_ * columns_;
+    const float bottom = mix(mix(values_[k], values_[k + 1], f.x()),
+                             mix(values_[k + columns_], values_[k + columns_ + 1], f.x()), f.y());
+    const float top = mix(mix(values_[k + up], values_[k + up + 1], f.x()),
+                          mix(values_[k + up + columns_], values_[k + up + columns_ + 1], f.x()), f.y());
+    return mix(bottom, top, f.z());
+  }
+
+private:
+  static float mix(float a, float b, float share) { return a + share * (b - a); }
+
+  float band_ = 0;
+  float inverse_cell_ = 0;
+  Eigen::Vector3f low_ = Eigen::Vector3f::Zero();
+  Eigen::Array3f limit_ = Eigen::Array3f::Zero();
+  std::size_t columns_ = 0;
+  std::size_t rows_ = 0;
+  std::vector<float> values_;  ///< x fastest
+};
+}  // namespace bin_picking

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <limits>
+
+#include "bin_picking_perception/model/trained_model.hpp"
+#include "bin_picking_perception/scene/depth_grid.hpp"
+
+namespace bin_picking
+{
+/// A pose held against those that its part's near symmetries make of it.
+struct RivalChoice
+{
+  Pose T_camera_object = Pose::Identity();  ///< the one that the scene contradicts least
+  bool turned = false;                      ///< it is another than the given one
+  /// By how much the scene contradicts the best pose that is truly another one (its surface elsewhere by more than a tenth
+  /// of the diameter) more than this one, in squares of a leaf's edge; infinity: there is none. Near 0 the view cannot tell.
+  double margin = std::numeric_limits<double>::infinity();
+};
+
+/// \param T_camera_object refined
+/// \param tolerance of the distance to the surface, metres
+/// \param grid what belongs to parts; \param surroundings the same grid with the bin
+RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
+                              const DepthGrid& surroundings, double tolerance);
+}  // namespace bin_picking

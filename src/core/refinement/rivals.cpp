@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_picking_perception/refinement/rivals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace bin_picking
+{
+namespace
+{
+constexpr int MAX_SCENE_POINTS = 800;
+constexpr std::size_t MAX_MODEL_POINTS = 400;
+constexpr float OUTLIER = 9;          // a residual of three tolerances is as wrong as any
+constexpr double OTHER_POSE = 0.1;    // of the diameter: nearer rivals are the same for a gripper
+constexpr int FINE_STEPS = 4;         // to either side
+constexpr double FINE_ANGLE = 0.044;  // rad: together half a step of the near symmetries
+
+/// Measured points around a pose, in the part's frame.
+struct Neighbourhood
+{
+  std::vector<Eigen::Vector3f> points;
+  double area_per_point = 0;  ///< in squares of a leaf's edge
+};
+
+Neighbourhood measuredAround(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid)
+{
+  constexpr double REACH = 0.65;  // of the diameter, round the part's middle: rivals stick out a little
+  const Eigen::Vector3d center = T_camera_object * model.center;
+  const Eigen::Vector2d middle = grid.camera.project(center);
+  const double radius = REACH * model.diameter / grid.pitch(center.z());
+  const int step = std::max(1, static_cast<int>(std::ceil(2 * radius / std::sqrt(double(MAX_SCENE_POINTS)))));
+  const auto clampTo = [](double value, int count) { return std::clamp(static_cast<int>(value), 0, count - 1); };
+  const Eigen::Isometry3f T_object_camera = T_camera_object.inverse().cast<float>();
+  Neighbourhood around;
+  around.area_per_point = std::pow(step * grid.pitch(center.z()) / model.parameters.leaf, 2);
+  for (int v = clampTo(middle.y() - radius, grid.height); v <= clampTo(middle.y() + radius, grid.height); v += step)
+    for (int u = clampTo(middle.x() - radius, grid.width); u <= clampTo(middle.x() + radius, grid.width); u += step)
+      if (grid.valid(grid.index(u, v)))
+        around.points.push_back(T_object_camera * grid.point(grid.index(u, v)));
+  return around;
+}
+
+/// Keeps the points that lie near the surface of one of the poses at least: they may belong to the part.
+void keepConcerned(Neighbourhood& around, const TrainedModel& model, const std::vector<Eigen::Isometry3f>& motions)
+{
+  const float near = 0.7f * model.field.band();
+  const auto strange = [&](const Eigen::Vector3f& p) {
+    return std::none_of(motions.begin(), motions.end(),
+                        [&](const Eigen::Isometry3f& motion) { return std::abs(model.field.at(motion * p)) < near; });
+  };
+  around.points.erase(std::remove_if(around.points.begin(), around.points.end(), strange), around.points.end());
+}
+
+/// Evenly chosen points of the surface; the same ones for all rivals, so that their sampling does not tell them apart.
+struct SurfaceSamples
+{
+  explicit SurfaceSamples(const TrainedModel& model)
+  {
+    const std::size_t step = std::max<std::size_t>(1, model.surface.size() / MAX_MODEL_POINTS);
+    for (std::size_t i = 0; i < model.surface.size(); i += step)
+      indices.push_back(static_cast<int>(i));
+    const double spacing = model.parameters.surface_spacing / model.parameters.leaf;
+    area_per_point = spacing * spacing * static_cast<double>(step);
+  }
+
+  std::vector<int> indices;
+  double area_per_point = 0;  ///< in squares of a leaf's edge
+};
+
+/// The sensor looked through the point: everything measured on its ray and beside it lies behind.
+bool seenThrough(const DepthGrid& grid, const Eigen::Vector3f& p, float limit)
+{
+  constexpr int AROUND[5][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+  const PinholeCamera& camera = grid.camera;
+  const auto u = static_cast<int>(std::lround(camera.fx * static_cast<double>(p.x() / p.z()) + camera.cx));
+  const auto v = static_cast<int>(std::lround(camera.fy * static_cast<double>(p.y() / p.z()) + camera.cy));
+  for (const auto& offset : AROUND)
+  {
+    if (!grid.inside(u + offset[0], v + offset[1]))
+      return false;
+    const int i = grid.index(u + offset[0], v + offset[1]);
+    if (!grid.valid(i) || grid.z[static_cast<std::size_t>(i)] < p.z() + limit)
+      return false;
+  }
+  return true;
+}
+
+class Contradiction
+{
+public:
+  Contradiction(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
+                const DepthGrid& surroundings, double tolerance)
+    : model_(model), T_camera_object_(T_camera_object), surroundings_(surroundings), tolerance_(tolerance),
+      around_(measuredAround(model, T_camera_object, grid)), samples_(model)
+  {
+  }
+
+  void concern(const std::vector<Eigen::Isometry3f>& motions) { keepConcerned(around_, model_, motions); }
+
+  /// Of the pose T_camera_object * turn: what was measured off its surface, and what of its surface the sensor looked
+  /// through. In squares of a leaf's edge, each at most OUTLIER / 2.
+  double operator()(const Pose& turn) const
+  {
+    return 0.5 * (around_.area_per_point * offSurface(turn) +
+                  samples_.area_per_point * static_cast<double>(OUTLIER) * numSeenThrough(T_camera_object_ * turn));
+  }
+
+private:
+  double offSurface(const Pose& turn) const
+  {
+    const Eigen::Isometry3f T_turned_object = turn.inverse().cast<float>();
+    const auto scale = static_cast<float>(2 / tolerance_);
+    double sum = 0;
+    for (const Eigen::Vector3f& p : around_.points)
+    {
+      const float residual = model_.field.at(T_turned_object * p) * scale;
+      sum += static_cast<double>(std::min(residual * residual, OUTLIER));
+    }
+    return sum;
+  }
+
+  int numSeenThrough(const Pose& T) const
+  {
+    constexpr float MIN_COSINE = 0.35f;  // flatter, the ray passes the silhouette
+    const Eigen::Isometry3f T_camera_object = T.cast<float>();
+    const auto limit = static_cast<float>(0.5 * model_.parameters.leaf + tolerance_);
+    int count = 0;
+    for (const int k : samples_.indices)
+    {
+      const auto i = static_cast<std::size_t>(k);
+      const Eigen::Vector3f p = T_camera_object * model_.surface.points[i];
+      const Eigen::Vector3f normal = T_camera_object.linear() * model_.surface.normals[i];
+      count += p.z() > 0 && -normal.dot(p) > MIN_COSINE * p.norm() && seenThrough(surroundings_, p, limit);
+    }
+    return count;
+  }
+
+  const TrainedModel& model_;
+  Pose T_camera_object_;
+  const DepthGrid& surroundings_;
+  double tolerance_;
+  Neighbourhood around_;
+  SurfaceSamples samples_;
+};
+
+/// Farthest motion of the part's box corners, modulo its symmetry.
+double farthestMotion(const TrainedModel& model, const Pose& a, const Pose& b)
+{
+  const Pose nearest = nearestEquivalent(a, b, model.symmetry);
+  double farthest = 0;
+  for (int k = 0; k < 8; ++k)
+  {
+    const Eigen::Vector3d corner =
+        model.center + 0.5 * model.size.cwiseProduct(Eigen::Vector3d(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
+    farthest = std::max(farthest, (nearest * corner - b * corner).norm());
+  }
+  return farthest;
+}
+
+Pose turnAbout(const NearSymmetry& near, double angle)
+{
+  Pose T = Pose::Identity();
+  T.linear() = Eigen::AngleAxisd(angle, near.axis).toRotationMatrix();
+  T.translation() = near.origin - T.linear() * near.origin;
+  return T;
+}
+}  // namespace
+
+RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
+                              const DepthGrid& surroundings, double tolerance)
+{
+  RivalChoice choice;
+  choice.T_camera_object = T_camera_object;
+  if (model.near_symmetries.empty())
+    return choice;
+  std::vector<Pose> turns = {Pose::Identity()};
+  std::vector<Eigen::Isometry3f> motions = {Eigen::Isometry3f::Identity()};
+  for (const NearSymmetry& near : model.near_symmetries)
+  {
+    turns.push_back(near.T_object_object);
+    motions.push_back(near.T_object_object.inverse().cast<float>());
+  }
+  Contradiction contradiction(model, T_camera_object, grid, surroundings, tolerance);
+  contradiction.concern(motions);
+  std::vector<double> against(turns.size());
+  std::transform(turns.begin(), turns.end(), against.begin(), std::cref(contradiction));
+  const auto best = static_cast<std::size_t>(std::min_element(against.begin(), against.end()) - against.begin());
+  Pose turn = turns[best];
+  double least = against[best];
+  if (best > 0)
+  {
+    choice.turned = true;
+    for (int k = -FINE_STEPS; k <= FINE_STEPS; ++k)
+    {
+      const Pose fine = turns[best] * turnAbout(model.near_symmetries[best - 1], k * FINE_ANGLE);
+      const double value = contradiction(fine);
+      if (value < least)
+      {
+        least = value;
+        turn = fine;
+      }
+    }
+    choice.T_camera_object = T_camera_object * turn;
+    choice.T_camera_object.linear() = Eigen::Quaterniond(choice.T_camera_object.linear()).normalized().toRotationMatrix();
+  }
+  for (std::size_t k = 0; k < turns.size(); ++k)
+    if (farthestMotion(model, T_camera_object * turns[k], choice.T_camera_object) > OTHER_POSE * model.diameter)
+      choice.margin = std::min(choice.margin, against[k] - least);
+  return choice;
+}
+}  // namespace bin_picking
