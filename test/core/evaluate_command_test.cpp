@@ -3,11 +3,8 @@
 //
 // Runs `bin_picking evaluate` as a user does, on a small data set that is rendered here.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
-
+#include "core/command_runner.hpp"
 #include "core/dataset_folders.hpp"
 #include "core/tee_scene.hpp"
 
@@ -19,31 +16,11 @@ using namespace test;
 
 const std::string TUBE = std::string(BIN_PICKING_SOURCE_DIR) + "/config/parts/three_way_tube";
 
-struct Outcome
-{
-  int exit_code = -1;
-  std::string text;  // both streams
-};
-
-Outcome run(const std::string& arguments)
-{
-  Outcome result;
-  FILE* pipe = popen((std::string(BIN_PICKING_EXECUTABLE) + " evaluate " + arguments + " 2>&1").c_str(), "r");
-  if (!pipe)
-    return result;
-  std::array<char, 4096> buffer;
-  for (std::size_t read = 0; (read = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-    result.text.append(buffer.data(), read);
-  const int status = pclose(pipe);
-  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return result;
-}
+Outcome run(const std::string& arguments) { return runCommand("evaluate " + arguments); }
 
 void expectFailure(const std::string& arguments, int exit_code, const std::vector<std::string>& said)
 {
-  const Outcome result = run(arguments);
-  EXPECT_EQ(result.exit_code, exit_code) << arguments << "\n" << result.text;
-  expectWords(result.text, said);
+  expectCommandFails("evaluate " + arguments, exit_code, said);
 }
 
 /// Two tubes that lie free on a table, and an empty table; the model is trained by the first run and kept.
