@@ -196,7 +196,7 @@ TEST_P(DemoPart, fingersCloseOnThePartAndMissItOnTheWay)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DemoPart, testing::ValuesIn(PARTS), [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(All, DemoPart, testing::ValuesIn(PARTS), [](const auto& test) { return test.param; });
 
 TEST(DemoParts, everyFolderIsTested)
 {
