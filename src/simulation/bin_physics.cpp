@@ -20,6 +20,7 @@ constexpr int MAX_RETURNS = 4;  // of what ends outside
 std::vector<BulletShape> bulletShapes(const std::vector<std::shared_ptr<const RigidBodyShape>>& shapes)
 {
   std::vector<BulletShape> result;
+  result.reserve(shapes.size());
   for (const auto& shape : shapes)
     result.emplace_back(*shape);
   return result;

@@ -35,15 +35,17 @@ std::vector<Eigen::Vector3d> cornersOfFace(const btConvexHullComputer& hull, int
 std::vector<Eigen::Vector3d> extremes(const std::vector<Eigen::Vector3d>& points)
 {
   std::vector<Eigen::Vector3d> result;
-  for (int k = 0; k < 27; ++k)
-  {
-    const Eigen::Vector3d direction(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-    if (direction.isZero())
-      continue;
-    result.push_back(*std::max_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
-      return direction.dot(a) < direction.dot(b);
-    }));
-  }
+  for (const double z : {-1.0, 0.0, 1.0})
+    for (const double y : {-1.0, 0.0, 1.0})
+      for (const double x : {-1.0, 0.0, 1.0})
+      {
+        const Eigen::Vector3d direction(x, y, z);
+        if (direction.isZero())
+          continue;
+        result.push_back(*std::max_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
+          return direction.dot(a) < direction.dot(b);
+        }));
+      }
   return result;
 }
 }  // namespace
