@@ -239,6 +239,10 @@ TEST(PartFile, symmetryMayStandInAModelsInfo)
   const std::string head = "format: 1\nname: tee\nmesh: {file: tee.stl, unit: mm}\nsymmetry:\n";
   const auto load = [&](const std::string& symmetry) { return loadPart(folder.write("part.yaml", head + symmetry)); };
   const PartDefinition part = load("  models_info: {file: models_info.json, id: 3}\n");
+  const std::vector<std::string> files = {"part.yaml", "tee.stl", "models_info.json"};
+  ASSERT_EQ(part.files.size(), files.size());
+  for (std::size_t k = 0; k < files.size(); ++k)
+    EXPECT_EQ(part.files[k], folder.path(files[k]));
   ASSERT_EQ(part.symmetry.discrete.size(), 2u);
   EXPECT_LT((part.symmetry.discrete[1] * Vector3d::Zero() - Vector3d(0.004, 0, 0)).norm(), 1e-12);
   const auto error = [&](const std::string& symmetry) { return messageOf<FileError>([&] { load(symmetry); }); };
