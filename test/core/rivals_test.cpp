@@ -166,6 +166,18 @@ TEST(Rivals, AHiddenKeywayIsSaidToBeAmbiguous)
     EXPECT_LT(view.choose(given * DEGREE).margin, SURE) << given;
 }
 
+TEST(SurfaceShare, FallsWhereTheSceneHasAnotherShape)
+{
+  const ShaftView view(0);
+  EXPECT_GT(surfaceShare(shaft(), view.truth, view.grid, TOLERANCE), 0.97);
+  Pose aside = view.truth;
+  aside.translation().z() += 0.003;  // three millimetres too deep: near, but nothing lies on the surface but its sides
+  EXPECT_LT(surfaceShare(shaft(), aside, view.grid, TOLERANCE), 0.5);
+  Pose away = view.truth;
+  away.translation().z() += 0.2;
+  EXPECT_EQ(surfaceShare(shaft(), away, view.grid, TOLERANCE), 0);
+}
+
 TEST(Rivals, WithoutNearSymmetriesThereIsNothingToChoose)
 {
   TrainedModel alone = shaft();

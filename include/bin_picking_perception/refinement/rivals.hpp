@@ -24,4 +24,9 @@ struct RivalChoice
 /// \param grid what belongs to parts; \param surroundings the same grid with the bin
 RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
                               const DepthGrid& surroundings, double tolerance);
+
+/// Of the measured points that lie near the part's surface at the pose, the share that lies on it; 0 if none is near. A
+/// part of another shape explains much of the surface it was laid on, but leaves points beside it.
+/// \param tolerance of the distance to the surface, metres
+double surfaceShare(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid, double tolerance);
 }  // namespace bin_picking

@@ -133,6 +133,9 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
                                 evidence.matchingRate();
   detection.score = verification.enabled ? score(evidence, outline.share(), verification) : detection.matching_rate;
   judge(detection, evidence, outline, choice.margin, verification);
+  if (verification.enabled)
+    require(detection, {"surface_share", surfaceShare(model, refined.T_camera_object, scene.grid, tolerance(scene, model, verification)),
+                        verification.min_surface_share, false});
   if (verification.enabled && scene.bin)
     require(detection, {"bin_penetration", binPenetration(model.surface, refined.T_camera_object, *scene.bin),
                         verification.max_bin_penetration, true});

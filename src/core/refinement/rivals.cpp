@@ -210,4 +210,18 @@ RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_ob
       choice.margin = std::min(choice.margin, against[k] - least);
   return choice;
 }
+
+double surfaceShare(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid, double tolerance)
+{
+  constexpr float NEAR = 0.7f;  // of the band
+  int near = 0;
+  int on_surface = 0;
+  for (const Eigen::Vector3f& p : measuredAround(model, T_camera_object, grid).points)
+  {
+    const float distance = std::abs(model.field.at(p));
+    near += distance < NEAR * model.field.band();
+    on_surface += distance < static_cast<float>(tolerance);
+  }
+  return near > 0 ? static_cast<double>(on_surface) / near : 0;
+}
 }  // namespace bin_picking

@@ -32,6 +32,10 @@ void VerificationParameters::visit(ParameterVisitor& v)
   v.field({"min_turn_margin", "", "a pose is ambiguous if another one, turned so that most of the part looks the same, is "
                                   "contradicted by less than this more, in squares of a leaf's edge; 0 accepts guesses", 0, 1000},
           min_turn_margin);
+  v.field({"min_surface_share", "", "smallest share of the points measured near the part's surface that lie on it; parts of "
+                                    "another shape leave points beside it",
+           0, 1},
+          min_surface_share);
   v.field({"max_bin_penetration", "m", "how deep a pose may reach through the floor or a wall of the given bin; as much as the "
                                        "bin's pose may be wrong", 0, 1},
           max_bin_penetration);
