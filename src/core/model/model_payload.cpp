@@ -211,6 +211,20 @@ std::vector<char> writePayload(const TrainedModel& model)
   return out.take();
 }
 
+namespace
+{
+/// Lengths from which grids can be laid out.
+bool isPlausible(const TrainedModel& model)
+{
+  constexpr float MAX_COORDINATE = 10;  // metres
+  const auto is_sane = [](const Eigen::Vector3f& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() < MAX_COORDINATE; };
+  const double leaf = model.parameters.leaf;
+  return (model.surface.empty() || (leaf > 0 && leaf < static_cast<double>(MAX_COORDINATE))) &&
+         std::all_of(model.surface.points.begin(), model.surface.points.end(), is_sane) &&
+         std::all_of(model.mesh.vertices.begin(), model.mesh.vertices.end(), is_sane);
+}
+}  // namespace
+
 std::shared_ptr<const TrainedModel> readPayload(const char* begin, std::size_t size)
 {
   BinaryReader in(begin, size);
@@ -231,6 +245,7 @@ std::shared_ptr<const TrainedModel> readPayload(const char* begin, std::size_t s
   model->classes.high_min = in.value<double>();
   model->table = ModelFileAccess::read(in, model->points.size());
   require(in.left() == 0, "there are more data than a model has");
+  require(isPlausible(*model), "lengths are absurd");
   prepareComparison(*model, Executor(0));
   return model;
 }

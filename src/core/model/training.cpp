@@ -155,9 +155,12 @@ void checkPoints(const TrainedModel& model)
 
 void prepareComparison(TrainedModel& model, const Executor& executor)
 {
+  if (model.surface.empty())
+    return;
   const double leaf = model.parameters.leaf;
-  const double cell = leaf / 3;
-  const double band = 1.5 * leaf;
+  constexpr double MAX_CELLS = 200;  // along the box's diagonal: a fine leaf must not cost gigabytes
+  const double cell = std::max(leaf / 3, boundingBoxDiagonal(model.surface.points) / MAX_CELLS);
+  const double band = std::max(1.5 * leaf, 4 * cell);
   const double kept = 0.35 * leaf;  // of the surface that a turn moves by less
   const OrientedPoints dense = model.mesh.empty() ? model.surface : sampleSurface(model.mesh, cell / 2, static_cast<std::uint32_t>(model.parameters.seed));
   model.field = DistanceField(dense, cell, band, executor);
