@@ -100,7 +100,7 @@ if [ -n "$screenshot" ]; then
   children+=($!)
   # Nothing tells that rviz has subscribed and drawn everything; a software renderer takes its time with a large cloud.
   sleep 15
-  pick_client.py >"$out/pick_client.log"  # pictures of the segmentation are only made while somebody looks
+  /usr/bin/python3 scripts/pick_client.py >"$out/pick_client.log"  # pictures of the segmentation are only made while somebody looks
   sleep 25
   import -window root "$screenshot"
   echo "demo: $screenshot"
