@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "node_parameters.hpp"
 
-#include <ros/param.h>
-
 #include <set>
 
 #include "bin_picking_perception/common/error.hpp"
@@ -82,10 +80,6 @@ NodeParameters parseNodeParameters(XmlRpcValue tree)
 
 NodeParameters readNodeParameters(const ros::NodeHandle& private_nh)
 {
-  XmlRpcValue tree;
-  if (!ros::param::get(private_nh.getNamespace(), tree) || tree.getType() != XmlRpcValue::TypeStruct)
-    throw ParameterError("There are no parameters below " + private_nh.getNamespace() +
-                         "; at least parts must be set.");
-  return parseNodeParameters(tree);
+  return parseNodeParameters(readTree(private_nh));
 }
 }  // namespace bin_picking_ros

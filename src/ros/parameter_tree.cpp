@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "parameter_tree.hpp"
 
+#include <ros/param.h>
+
 #include <limits>
 #include <sstream>
 
@@ -22,6 +24,15 @@ std::string numberText(double value)
   return text.str();
 }
 }  // namespace
+
+XmlRpc::XmlRpcValue readTree(const ros::NodeHandle& private_nh)
+{
+  XmlRpc::XmlRpcValue tree;
+  if (!ros::param::get(private_nh.getNamespace(), tree) || tree.getType() != XmlRpc::XmlRpcValue::TypeStruct)
+    throw bin_picking::ParameterError("There are no parameters below " + private_nh.getNamespace() +
+                                      "; at least parts must be set.");
+  return tree;
+}
 
 std::string scalarText(XmlRpcValue& value, const std::string& path)
 {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <ros/node_handle.h>
 #include <XmlRpcValue.h>
 
 #include <string>
@@ -10,6 +11,9 @@
 
 namespace bin_picking_ros
 {
+/// All parameters of a node. \throws bin_picking::ParameterError there are none: parts must be set at least
+XmlRpc::XmlRpcValue readTree(const ros::NodeHandle& private_nh);
+
 /// A number, a truth value or a text as text. Whole numbers given as double lose the fraction ("5", not "5.0"), so that
 /// both spellings suit both types. \throws bin_picking::ParameterError for lists and binary data
 std::string scalarText(XmlRpc::XmlRpcValue& value, const std::string& path);

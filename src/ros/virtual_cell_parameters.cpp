@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "virtual_cell_parameters.hpp"
 
-#include <ros/param.h>
-
 #include <limits>
 
 #include "bin_picking_perception/common/error.hpp"
@@ -107,10 +105,6 @@ VirtualCellParameters parseVirtualCellParameters(XmlRpcValue tree)
 
 VirtualCellParameters readVirtualCellParameters(const ros::NodeHandle& private_nh)
 {
-  XmlRpcValue tree;
-  if (!ros::param::get(private_nh.getNamespace(), tree) || tree.getType() != XmlRpcValue::TypeStruct)
-    throw ParameterError("There are no parameters below " + private_nh.getNamespace() +
-                         "; at least parts must be set.");
-  return parseVirtualCellParameters(tree);
+  return parseVirtualCellParameters(readTree(private_nh));
 }
 }  // namespace bin_picking_ros

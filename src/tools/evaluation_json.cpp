@@ -61,28 +61,13 @@ Json figuresJson(const EvaluationFigures& f)
   return json;
 }
 
-const char* verdictWord(Verdict verdict)
-{
-  switch (verdict)
-  {
-    case Verdict::Right:
-      return "right";
-    case Verdict::Hidden:
-      return "hidden";
-    case Verdict::Duplicate:
-      return "duplicate";
-    default:
-      return "wrong";
-  }
-}
-
 Json estimateJson(const JudgedScene& scene, std::size_t index)
 {
   const JudgedEstimate& judged = scene.estimates[index];
   Json json = {{"part", judged.estimate.part},
                {"score", judged.estimate.score},
                {"T_camera_object", toJson(judged.estimate.T_camera_object)},
-               {"verdict", verdictWord(judged.verdict)},
+               {"verdict", toString(judged.verdict)},
                {"text", verdictText(scene, index)},
                {"instance", nullptr}};
   if (!judged.instance)

@@ -43,6 +43,9 @@ enum class Verdict
   Wrong       ///< hits none
 };
 
+/// "right", "hidden", "duplicate", "wrong".
+const char* toString(Verdict verdict);
+
 struct JudgedEstimate
 {
   PoseEstimate estimate;

@@ -12,21 +12,6 @@ namespace bin_picking
 {
 namespace
 {
-const char* verdictClass(Verdict verdict)
-{
-  switch (verdict)
-  {
-    case Verdict::Right:
-      return "right";
-    case Verdict::Hidden:
-      return "hidden";
-    case Verdict::Duplicate:
-      return "duplicate";
-    default:
-      return "wrong";
-  }
-}
-
 /// A sign beside the colour, for those who do not see it.
 const char* verdictSign(Verdict verdict)
 {
@@ -97,7 +82,7 @@ private:
     for (const std::size_t i : missed_)
       writeMark(picture_.instances[i], "i" + std::to_string(i), "missed", missedText(i));
     for (std::size_t e = scene_.estimates.size(); e-- > 0;)  // the best on top
-      writeMark(picture_.estimates[e], "e" + std::to_string(e), verdictClass(scene_.estimates[e].verdict),
+      writeMark(picture_.estimates[e], "e" + std::to_string(e), toString(scene_.estimates[e].verdict),
                 findText(e) + ", score " + decimal(scene_.estimates[e].estimate.score, 3));
     writeLabels();
     out_ << "</svg></div>\n";
@@ -158,7 +143,7 @@ private:
   void writeFind(std::size_t e)
   {
     const JudgedEstimate& judged = scene_.estimates[e];
-    writeRow("e" + std::to_string(e), verdictClass(judged.verdict), verdictSign(judged.verdict), findText(e),
+    writeRow("e" + std::to_string(e), toString(judged.verdict), verdictSign(judged.verdict), findText(e),
              decimal(judged.estimate.score, 3));
   }
 

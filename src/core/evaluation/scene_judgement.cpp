@@ -232,6 +232,21 @@ JudgedScene judgeScene(const EvaluationScene& scene, const std::vector<PoseEstim
   return judged;
 }
 
+const char* toString(Verdict verdict)
+{
+  switch (verdict)
+  {
+    case Verdict::Right:
+      return "right";
+    case Verdict::Hidden:
+      return "hidden";
+    case Verdict::Duplicate:
+      return "duplicate";
+    default:
+      return "wrong";
+  }
+}
+
 std::string verdictText(const JudgedScene& scene, std::size_t estimate)
 {
   const JudgedEstimate& judged = scene.estimates.at(estimate);
