@@ -21,6 +21,8 @@ else
   trap 'umount "$root/proc" "$root/dev/shm" "$root/dev" 2>/dev/null || true; rm -rf --one-file-system "$root"' EXIT
 fi
 
+commit=$(git rev-parse HEAD)  # commits may be added while this runs
+
 # The host's own package sources and apt settings (proxy, certificates, dates).
 sources=()
 for file in /etc/apt/sources.list /etc/apt/sources.list.d/*.sources /etc/apt/sources.list.d/*.list; do
@@ -43,8 +45,8 @@ mount --bind /dev "$root/dev"
 mount -t tmpfs tmpfs "$root/dev/shm" 2>/dev/null || true
 
 mkdir -p "$root/home/package"
-git archive HEAD | tar -x -C "$root/home/package"
+git archive "$commit" | tar -x -C "$root/home/package"
 inside() { chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 "$@"; }
 inside /home/package/scripts/test.sh
 inside /home/package/scripts/demo.sh
-echo "test_fresh: commit $(git rev-parse --short HEAD) builds, passes its tests and runs its demo on a fresh Debian 12"
+echo "test_fresh: commit ${commit:0:7} builds, passes its tests and runs its demo on a fresh Debian 12"
