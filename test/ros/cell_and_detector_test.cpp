@@ -22,10 +22,17 @@ GetBestGrasp::Response ask()
   GetBestGrasp call;
   EXPECT_TRUE(ros::service::waitForService("detector/get_best_grasp", ros::Duration(120)));
   const auto end = std::chrono::steady_clock::now() + CELL_PATIENCE;
-  do
-    EXPECT_TRUE(ros::service::call("detector/get_best_grasp", call));
-  while ((call.response.code.value == ReturnCode::NOT_READY || call.response.code.value == ReturnCode::NO_CLOUD) &&
-         std::chrono::steady_clock::now() < end);
+  const auto is_early = [&call] {
+    return call.response.code.value == ReturnCode::NOT_READY || call.response.code.value == ReturnCode::NO_CLOUD;
+  };
+  bool answered = false;  // on a loaded machine a connection made while the manager starts may be lost
+  while ((!answered || is_early()) && std::chrono::steady_clock::now() < end)
+  {
+    answered = ros::service::call("detector/get_best_grasp", call);
+    if (!answered)
+      ros::WallDuration(0.1).sleep();
+  }
+  EXPECT_TRUE(answered) << "the service never answered";
   return call.response;
 }
 
