@@ -12,6 +12,7 @@
 #include "bin_picking_perception/common/error.hpp"
 #include "part_loading.hpp"
 #include "resource_path.hpp"
+#include "time_difference.hpp"
 
 namespace bin_picking_ros
 {
@@ -149,7 +150,7 @@ bool DetectorNode::handleRequest(Request& request, Response& response)
     response = fail(translateException(std::current_exception()), job);
   }
   if (job.cloud)
-    response.age = ros::Time::now() - job.cloud->header.stamp;
+    response.age = durationBetween(job.cloud->header.stamp, ros::Time::now());
   return true;  // false would reach the caller without any data
 }
 
@@ -183,7 +184,7 @@ PointCloud2ConstPtr DetectorNode::waitForNew(const Job& job) const
                                                  secondsText(limit) + " were waited.");
   throw RequestError(ReturnCode::NO_CLOUD,
                      "No cloud exposed after the call came within " + secondsText(limit) + "; the newest is stamped " +
-                         secondsText((job.called - latest->header.stamp).toSec()) + " before the call.");
+                         secondsText(secondsBetween(latest->header.stamp, job.called)) + " before the call.");
 }
 
 PointCloud2ConstPtr DetectorNode::takeLatest(const Request& request, const Job& job) const
@@ -194,7 +195,7 @@ PointCloud2ConstPtr DetectorNode::takeLatest(const Request& request, const Job& 
   if (cloud->header.stamp.isZero())
     throw RequestError(ReturnCode::STALE_CLOUD, "The newest cloud carries no time, so that its age is not known.");
   const double max_age = request.max_age > ros::Duration(0) ? request.max_age.toSec() : parameters_.max_age;
-  const double age = (job.called - cloud->header.stamp).toSec();
+  const double age = secondsBetween(cloud->header.stamp, job.called);
   if (age > max_age)
     throw RequestError(ReturnCode::STALE_CLOUD, "The newest cloud is " + secondsText(age) + " old; at most " +
                                                     secondsText(max_age) + " are allowed.");

@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "cloud_conversion.hpp"
+#include "time_difference.hpp"
 
 namespace bin_picking_ros
 {
@@ -76,7 +77,7 @@ void NodeDiagnostics::describeInput(DiagnosticStatusWrapper& status)
   status.add("rate [Hz]", rate);
   status.add("received", num_received);
   status.add("frame", cloud->header.frame_id);
-  status.add("age [s]", (ros::Time::now() - cloud->header.stamp).toSec());
+  status.add("age [s]", secondsBetween(cloud->header.stamp, ros::Time::now()));
   status.add("size", std::to_string(cloud->width) + " x " + std::to_string(cloud->height));
   try
   {

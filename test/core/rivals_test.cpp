@@ -51,7 +51,8 @@ TEST(DistanceField, MeasuresASphereInsideAndOutside)
   const double band = 0.005;
   const DistanceField field(sphere(radius), cell, band, Executor(2));
   for (const double r : {0.0155, 0.018, 0.0199, 0.02, 0.0203, 0.022, 0.0245})
-    for (const Eigen::Vector3d& direction : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(1, -2, 3), Eigen::Vector3d(-1, 1, 1)})
+    for (const Eigen::Vector3d& direction :
+         {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(1, -2, 3), Eigen::Vector3d(-1, 1, 1)})
       EXPECT_NEAR(field.at((r * direction.normalized()).cast<float>()), r - radius, cell / 8) << r;
   EXPECT_FLOAT_EQ(field.at(Eigen::Vector3f(0.5f, 0, 0)), static_cast<float>(band));
   EXPECT_NEAR(std::abs(field.at(Eigen::Vector3f::Zero())), band, 1e-7);
@@ -72,7 +73,7 @@ TEST(NearSymmetry, AShaftIsNearlyABodyOfRevolutionAboutItsAxisAlone)
   for (const NearSymmetry& near : shaft().near_symmetries)
   {
     EXPECT_GT(near.broken, 0.005) << "the keyway breaks every turn";
-    about_axis += std::abs(near.axis.z()) > 0.999 && near.broken < 0.1;
+    about_axis += std::abs(near.axis.direction.z()) > 0.999 && near.broken < 0.1;
   }
   EXPECT_EQ(about_axis, 23u);  // steps of 15 degrees
   EXPECT_EQ(about_axis, shaft().near_symmetries.size());
@@ -94,7 +95,8 @@ TEST(NearSymmetry, DeclaredTurnsAreNoRivals)
   EXPECT_TRUE(has_half_step);
 }
 
-/// What a camera sees of the shaft that lies across its view, turned about its own axis; 0: the keyway faces the camera.
+/// What a camera sees of the shaft that lies across its view, turned about its own axis; 0: the keyway faces the
+/// camera.
 struct ShaftView
 {
   explicit ShaftView(double turn) : truth(poseAt(turn))
@@ -201,11 +203,11 @@ TEST(BinPenetration, CountsFloorAndWallsBelowTheRim)
     return binPenetration(corners, T, bin);
   };
   EXPECT_EQ(at(0, 0, 0.02), 0);
-  EXPECT_NEAR(at(0, 0, 0.007), 0.003, 1e-6);       // floor
-  EXPECT_NEAR(at(0.194, 0, 0.05), 0.004, 1e-6);    // wall at x = 0.2
-  EXPECT_NEAR(at(0, -0.145, 0.05), 0.005, 1e-6);   // wall at y = -0.15
-  EXPECT_EQ(at(0.23, 0, 0.12), 0);                 // on the rim
-  EXPECT_NEAR(at(0.23, 0, 0.108), 0.002, 1e-6);    // a little below the rim: it may have come over it
+  EXPECT_NEAR(at(0, 0, 0.007), 0.003, 1e-6);      // floor
+  EXPECT_NEAR(at(0.194, 0, 0.05), 0.004, 1e-6);   // wall at x = 0.2
+  EXPECT_NEAR(at(0, -0.145, 0.05), 0.005, 1e-6);  // wall at y = -0.15
+  EXPECT_EQ(at(0.23, 0, 0.12), 0);                // on the rim
+  EXPECT_NEAR(at(0.23, 0, 0.108), 0.002, 1e-6);   // a little below the rim: it may have come over it
 }
 }  // namespace
 }  // namespace bin_picking

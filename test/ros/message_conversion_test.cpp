@@ -13,6 +13,7 @@
 #include "markers.hpp"
 #include "pose_conversion.hpp"
 #include "segmentation_image.hpp"
+#include "time_difference.hpp"
 
 namespace
 {
@@ -254,5 +255,15 @@ TEST(SegmentationImage, GrayWhereNothingIsColourWhereSegmentsAre)
   EXPECT_EQ(image.data[0], 100);
   EXPECT_GT(spread(1), 20);
   EXPECT_GT(spread(2), 2 * spread(1));
+}
+
+TEST(TimeDifference, DoesNotThrowForStampsOfAFaultyDriver)
+{
+  const ros::Time now(1800000000, 500000000);
+  const ros::Time garbage(4294967295u, 0);  // ros::Time's own difference of the two throws
+  EXPECT_THROW(now - garbage, std::runtime_error);
+  EXPECT_NEAR(secondsBetween(garbage, now), -2494967294.5, 1e-3);
+  EXPECT_EQ(durationBetween(garbage, now).toSec(), -1e9);
+  EXPECT_EQ(durationBetween(now, now + ros::Duration(0.25)).toSec(), 0.25);
 }
 }  // namespace

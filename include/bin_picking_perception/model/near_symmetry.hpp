@@ -10,13 +10,13 @@
 
 namespace bin_picking
 {
-/// A motion that maps much of a part onto itself, but not all of it: a view of the rest is needed to tell the two apart.
+/// A motion that maps much of a part onto itself, but not all of it: a view of the rest is needed to tell the two
+/// apart.
 struct NearSymmetry
 {
   Pose T_object_object = Pose::Identity();
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();    ///< of the turn, unit, part frame
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< a point on it
-  double broken = 0;                                  ///< share of the surface that it moves off the surface, (0, 1)
+  Symmetry::Axis axis;  ///< of the turn
+  double broken = 0;    ///< share of the surface that it moves off the surface, (0, 1)
 };
 
 /// Turns about the box's and the principal axes that keep most of the surface. Declared symmetries are not among them.

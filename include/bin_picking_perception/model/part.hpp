@@ -33,24 +33,28 @@ struct Symmetry
 };
 
 /// The finite group that the rotations generate, the identity first. Elements closer than 0.1 degrees and 1 um are one.
-/// \throws ParameterError more than 120 elements (no finite rotation group of a part is larger; an axis or order is wrong)
+/// \throws ParameterError more than 120 elements (no finite rotation group of a part is larger; an axis or order is
+/// wrong)
 std::vector<Pose> closeUnderComposition(const std::vector<Pose>& generators);
 
 /// The representative of T's symmetry class that is nearest in rotation to `reference`.
 Pose nearestEquivalent(const Pose& T_camera_object, const Pose& reference, const Symmetry& symmetry);
 
 /// One way to take the part, as a person wrote it down.
+/// The turn about an axis by an angle (rad), as a motion of the part's frame.
+Pose rotationAbout(const Symmetry::Axis& axis, double angle);
+
 struct GraspDefinition
 {
   std::string id;
   /// Frame between the finger tips: Z = approach, Y = finger closing direction.
   Pose T_object_tip = Pose::Identity();
-  double width = 0;             ///< finger distance when holding, metres
-  double opening = 0;           ///< finger distance on the way in, metres
-  double approach = 0.08;       ///< distance of the pre-grasp back along Z, metres
-  double retreat = 0.10;        ///< distance of the retreat, metres (against gravity where known, else back along Z)
-  int priority = 0;             ///< larger is preferred
-  bool symmetric = true;        ///< also offer the copies under the part's symmetry
+  double width = 0;        ///< finger distance when holding, metres
+  double opening = 0;      ///< finger distance on the way in, metres
+  double approach = 0.08;  ///< distance of the pre-grasp back along Z, metres
+  double retreat = 0.10;   ///< distance of the retreat, metres (against gravity where known, else back along Z)
+  int priority = 0;        ///< larger is preferred
+  bool symmetric = true;   ///< also offer the copies under the part's symmetry
 };
 
 /// What part.yaml says. The mesh path is absolute or relative to the working folder after loading.
@@ -63,12 +67,13 @@ struct PartDefinition
   std::optional<Eigen::Vector3d> expected_size;  ///< bounding box that the mesh must have (1 % or 0.5 mm), metres
   Symmetry symmetry;
   std::vector<GraspDefinition> grasps;
-  std::string training_yaml;  ///< the `training:` map as text, to be applied over the preset; may be empty
+  std::string training_yaml;       ///< the `training:` map as text, to be applied over the preset; may be empty
   std::vector<std::string> files;  ///< all that make up the part: its part.yaml first, then those that it names
 };
 
 /// Reads DIRECTORY/part.yaml (or a part.yaml given by name).
-/// \throws FileError missing file; unknown key (with "did you mean"); no unit; a mistyped number; a grasp without id; ...
+/// \throws FileError missing file; unknown key (with "did you mean"); no unit; a mistyped number; a grasp without id;
+/// ...
 ///   with the line
 PartDefinition loadPart(const std::string& path);
 

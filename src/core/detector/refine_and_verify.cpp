@@ -2,11 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "../common/parameter_text.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/refinement/icp.hpp"
 #include "bin_picking_perception/refinement/rivals.hpp"
-#include "../common/parameter_text.hpp"
 #include "stages.hpp"
 
 namespace bin_picking
@@ -19,8 +20,8 @@ constexpr double OUTLINE_NOISE = 3;  // standard deviations that are no step in 
 
 double score(const PoseEvidence& evidence, double outline_share, const VerificationParameters& parameters)
 {
-  // The inlier share says how right the pose is, the visible fraction how sure that is, and the outline whether it is the
-  // whole of the thing that was seen; no one of them ranks well alone.
+  // The inlier share says how right the pose is, the visible fraction how sure that is, and the outline whether it is
+  // the whole of the thing that was seen; no one of them ranks well alone.
   constexpr double OUTLINE_WEIGHT = 0.3;
   constexpr double VISIBLE_EXPONENT = 0.7;
   return evidence.inlierShare(parameters.unmeasured_weight) * std::pow(evidence.visibleFraction(), VISIBLE_EXPONENT) *
@@ -58,7 +59,8 @@ std::vector<Hypothetical> mostPromising(const std::vector<Hypothetical>& poses, 
   return best;
 }
 
-IcpResult refine(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model, const IcpParameters& icp)
+IcpResult refine(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
+                 const IcpParameters& icp)
 {
   const double leaf = model.parameters.leaf;
   switch (icp.method)
@@ -84,62 +86,78 @@ void require(Detection& detection, const Criterion& criterion)
   detection.criteria.push_back(criterion);
 }
 
-void judge(Detection& detection, const PoseEvidence& evidence, const OutlineEvidence& outline, double turn_margin,
+/// What speaks for and against a refined pose.
+struct Findings
+{
+  PoseEvidence evidence;
+  OutlineEvidence outline;
+  double turn_margin = std::numeric_limits<double>::infinity();
+  double surface_share = 0;
+};
+
+void judge(Detection& detection, const Findings& findings, const PreparedScene& scene, const TrainedModel& model,
            const VerificationParameters& parameters)
 {
   require(detection, {"matching_rate", detection.matching_rate, parameters.min_matching_rate, false});
-  if (parameters.enabled)
-  {
-    require(detection, {"inlier_share", evidence.inlierShare(parameters.unmeasured_weight), parameters.min_inlier_share, false});
-    require(detection, {"visible_fraction", detection.visible_fraction, parameters.min_visible_fraction, false});
-    require(detection, {"violation_share", evidence.violationShare(), parameters.max_violation_share, true});
-    require(detection, {"score", detection.score, parameters.min_score, false});
-    require(detection, {"outline_share", outline.share(), parameters.min_outline_share, false});
-    if (std::isfinite(turn_margin))
-      require(detection, {"turn_margin", turn_margin, parameters.min_turn_margin, false});
-  }
+  if (!parameters.enabled)
+    return;
+  const double inlier_share = findings.evidence.inlierShare(parameters.unmeasured_weight);
+  require(detection, {"inlier_share", inlier_share, parameters.min_inlier_share, false});
+  require(detection, {"visible_fraction", detection.visible_fraction, parameters.min_visible_fraction, false});
+  require(detection, {"violation_share", findings.evidence.violationShare(), parameters.max_violation_share, true});
+  require(detection, {"score", detection.score, parameters.min_score, false});
+  require(detection, {"outline_share", findings.outline.share(), parameters.min_outline_share, false});
+  if (std::isfinite(findings.turn_margin))
+    require(detection, {"turn_margin", findings.turn_margin, parameters.min_turn_margin, false});
+  require(detection, {"surface_share", findings.surface_share, parameters.min_surface_share, false});
+  if (scene.bin)
+    require(detection, {"bin_penetration", binPenetration(model.surface, detection.T_camera_object, *scene.bin),
+                        parameters.max_bin_penetration, true});
+}
+
+/// ICP; then, of the poses that look much the same, the one that the scene contradicts least.
+Pose settle(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
+            const DetectorParameters& parameters, double& turn_margin)
+{
+  const Pose refined = refine(pose, scene, model, parameters.icp).T_camera_object;
+  if (!parameters.verification.enabled)
+    return refined;
+  const RivalChoice choice = chooseAmongRivals(model, refined, scene.grid, scene.surroundings,
+                                               tolerance(scene, model, parameters.verification));
+  turn_margin = choice.margin;
+  if (!choice.turned)
+    return refined;
+  return refine({choice.T_camera_object, pose.votes, pose.region}, scene, model, parameters.icp).T_camera_object;
 }
 
 Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
                 const DetectorParameters& parameters, int comparison_cell)
 {
   const VerificationParameters& verification = parameters.verification;
-  IcpResult refined = refine(pose, scene, model, parameters.icp);
-  RivalChoice choice;
-  if (verification.enabled)
-  {
-    choice = chooseAmongRivals(model, refined.T_camera_object, scene.grid, scene.surroundings,
-                               tolerance(scene, model, verification));
-    if (choice.turned)
-      refined = refine({choice.T_camera_object, pose.votes, pose.region}, scene, model, parameters.icp);
-  }
+  const double leaf = model.parameters.leaf;
+  const double near = tolerance(scene, model, verification);
+  Findings findings;
   Assessed assessed;
   Detection& detection = assessed.detection;
   detection.part = model.name;
-  detection.T_camera_object = refined.T_camera_object;
   detection.votes = pose.votes;
-  const OrientedPoints visible = visiblePoints(model, refined.T_camera_object);
-  const PoseEvidence evidence =
-      gatherEvidence(thinned(visible, FINE_POINTS), refined.T_camera_object, scene.grid, scene.surroundings, scene.normals,
-                     tolerance(scene, model, verification), verification);
-  const double leaf = model.parameters.leaf;
-  const OutlineEvidence outline = gatherOutlineEvidence(visible, refined.T_camera_object, scene.surroundings, leaf,
-                                                        leaf + OUTLINE_NOISE * scene.noise);
-  detection.visible_fraction = evidence.visibleFraction();
-  detection.rms = evidence.rms;
-  detection.matching_rate = pose.region->is_candidate ?
-                                matchingRate(model.surface, refined.T_camera_object, pose.region->samples.points,
-                                             verification.match_distance) :
-                                evidence.matchingRate();
-  detection.score = verification.enabled ? score(evidence, outline.share(), verification) : detection.matching_rate;
-  judge(detection, evidence, outline, choice.margin, verification);
+  const Pose T = settle(pose, scene, model, parameters, findings.turn_margin);
+  detection.T_camera_object = T;
+  const OrientedPoints visible = visiblePoints(model, T);
+  findings.evidence = gatherEvidence(thinned(visible, FINE_POINTS), T, scene.grid, scene.surroundings, scene.normals,
+                                     near, verification);
+  findings.outline = gatherOutlineEvidence(visible, T, scene.surroundings, leaf, leaf + OUTLINE_NOISE * scene.noise);
   if (verification.enabled)
-    require(detection, {"surface_share", surfaceShare(model, refined.T_camera_object, scene.grid, tolerance(scene, model, verification)),
-                        verification.min_surface_share, false});
-  if (verification.enabled && scene.bin)
-    require(detection, {"bin_penetration", binPenetration(model.surface, refined.T_camera_object, *scene.bin),
-                        verification.max_bin_penetration, true});
-  assessed.cells = coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell);
+    findings.surface_share = surfaceShare(model, T, scene.grid, near);
+  detection.visible_fraction = findings.evidence.visibleFraction();
+  detection.rms = findings.evidence.rms;
+  detection.matching_rate = pose.region->is_candidate ? matchingRate(model.surface, T, pose.region->samples.points,
+                                                                     verification.match_distance)
+                                                      : findings.evidence.matchingRate();
+  detection.score =
+      verification.enabled ? score(findings.evidence, findings.outline.share(), verification) : detection.matching_rate;
+  judge(detection, findings, scene, model, verification);
+  assessed.cells = coveredCells(findings.evidence.pixels, scene.grid.width, scene.reduction, comparison_cell);
   return assessed;
 }
 }  // namespace
@@ -162,8 +180,9 @@ int comparisonCell(const DepthGrid& raw, const std::vector<std::shared_ptr<const
 }
 
 std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, const PreparedScene& scene,
-                                      const TrainedModel& model, const DetectorParameters& parameters, int comparison_cell,
-                                      const Deadline& deadline, const Executor& executor, StageClock& clock, bool& partial)
+                                      const TrainedModel& model, const DetectorParameters& parameters,
+                                      int comparison_cell, const Deadline& deadline, const Executor& executor,
+                                      StageClock& clock, bool& partial)
 {
   const auto best = mostPromising(poses, scene, model, parameters.verification, executor);
   clock.lap("ranking");
@@ -196,7 +215,8 @@ void summarize(DetectionResult& result)
   result.code = result.detections.empty() ? DetectionCode::NoMatch : DetectionCode::Ok;
   if (result.detections.empty())
     result.message = "no part was recognised; the best of " + std::to_string(result.rejected.size()) +
-                     " rejected poses: " + (result.rejected.empty() ? "none" : result.rejected.front().rejection) + late;
+                     " rejected poses: " + (result.rejected.empty() ? "none" : result.rejected.front().rejection) +
+                     late;
   else
     result.message = std::to_string(result.detections.size()) + " part(s) found, the best with a score of " +
                      roundedText(result.detections.front().score, 2) + late;
@@ -204,9 +224,8 @@ void summarize(DetectionResult& result)
 
 void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& parameters, DetectionResult& result)
 {
-  std::stable_sort(assessed.begin(), assessed.end(), [](const Assessed& a, const Assessed& b) {
-    return a.detection.score > b.detection.score;
-  });
+  std::stable_sort(assessed.begin(), assessed.end(),
+                   [](const Assessed& a, const Assessed& b) { return a.detection.score > b.detection.score; });
   std::vector<int> explained;  // by accepted detections, ascending
   for (auto& candidate : assessed)
   {
@@ -214,7 +233,8 @@ void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& 
     std::vector<int> shared;
     std::set_intersection(candidate.cells.begin(), candidate.cells.end(), explained.begin(), explained.end(),
                           std::back_inserter(shared));
-    const double overlap = static_cast<double>(shared.size()) / std::max<double>(1, static_cast<double>(candidate.cells.size()));
+    const double overlap =
+        static_cast<double>(shared.size()) / std::max<double>(1, static_cast<double>(candidate.cells.size()));
     if (detection.rejection.empty() && overlap > parameters.verification.overlap)
       detection.rejection = "a better detection explains " + roundedText(100 * overlap, 0) + " % of what it explains";
     if (detection.rejection.empty() && static_cast<int>(result.detections.size()) >= parameters.max_detections)
@@ -226,7 +246,8 @@ void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& 
       continue;
     }
     std::vector<int> merged;
-    std::set_union(explained.begin(), explained.end(), candidate.cells.begin(), candidate.cells.end(), std::back_inserter(merged));
+    std::set_union(explained.begin(), explained.end(), candidate.cells.begin(), candidate.cells.end(),
+                   std::back_inserter(merged));
     explained = std::move(merged);
     result.detections.push_back(std::move(detection));
   }

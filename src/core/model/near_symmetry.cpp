@@ -10,18 +10,12 @@ namespace bin_picking
 {
 namespace
 {
-constexpr int STEPS = 24;             // of a turn
-constexpr double MAX_BROKEN = 0.45;   // share of the surface: beyond it, poses have little in common
+constexpr int STEPS = 24;            // of a turn
+constexpr double MAX_BROKEN = 0.45;  // share of the surface: beyond it, poses have little in common
 constexpr std::size_t MAX_POINTS = 1000;
 
-struct Line
-{
-  Eigen::Vector3d direction;
-  Eigen::Vector3d origin;
-};
-
 /// Axes of the box, of the drawing and of inertia, each line once.
-std::vector<Line> candidateAxes(const OrientedPoints& surface)
+std::vector<Symmetry::Axis> candidateAxes(const OrientedPoints& surface)
 {
   constexpr double SAME_DIRECTION = 0.999;
   Eigen::AlignedBox3d box;
@@ -35,7 +29,7 @@ std::vector<Line> candidateAxes(const OrientedPoints& surface)
   for (const Eigen::Vector3f& p : surface.points)
     scatter += (p.cast<double>() - mean) * (p.cast<double>() - mean).transpose();
   const Eigen::Matrix3d principal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors();
-  std::vector<Line> axes;
+  std::vector<Symmetry::Axis> axes;
   for (int k = 0; k < 3; ++k)
   {
     axes.push_back({Eigen::Vector3d::Unit(k), box.center()});
@@ -43,10 +37,10 @@ std::vector<Line> candidateAxes(const OrientedPoints& surface)
     axes.push_back({Eigen::Vector3d::Unit(k), mean});
     axes.push_back({Eigen::Vector3d::Unit(k), Eigen::Vector3d::Zero()});  // where drawings like to put them
   }
-  std::vector<Line> distinct;
-  for (const Line& axis : axes)
+  std::vector<Symmetry::Axis> distinct;
+  for (const Symmetry::Axis& axis : axes)
   {
-    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const Line& other) {
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const Symmetry::Axis& other) {
       const double apart = (axis.origin - other.origin).cross(other.direction).norm();
       return std::abs(axis.direction.dot(other.direction)) > SAME_DIRECTION && apart < 0.01 * box.diagonal().norm();
     });
@@ -54,14 +48,6 @@ std::vector<Line> candidateAxes(const OrientedPoints& surface)
       distinct.push_back(axis);
   }
   return distinct;
-}
-
-Pose turnAbout(const Line& axis, double angle)
-{
-  Pose T = Pose::Identity();
-  T.linear() = Eigen::AngleAxisd(angle, axis.direction).toRotationMatrix();
-  T.translation() = axis.origin - T.linear() * axis.origin;
-  return T;
 }
 
 double brokenShare(const OrientedPoints& surface, const DistanceField& field, const Pose& T, double tolerance)
@@ -93,13 +79,13 @@ std::vector<NearSymmetry> findNearSymmetries(const OrientedPoints& surface, cons
                                              const Symmetry& declared, double tolerance)
 {
   std::vector<NearSymmetry> found;
-  for (const Line& axis : candidateAxes(surface))
+  for (const Symmetry::Axis& axis : candidateAxes(surface))
     for (int k = 1; k < STEPS; ++k)
     {
-      const Pose T = turnAbout(axis, 2 * M_PI * k / STEPS);
+      const Pose T = rotationAbout(axis, 2 * M_PI * k / STEPS);
       const double broken = brokenShare(surface, field, T, tolerance);
       if (broken < MAX_BROKEN && !isDeclared(T, declared, surface, tolerance))
-        found.push_back({T, axis.direction, axis.origin, broken});
+        found.push_back({T, axis, broken});
     }
   return found;
 }

@@ -29,8 +29,7 @@ Pose readRotation(const YamlMap& yaml)
   if (order < 2 || order > MAX_ORDER)
     yaml.fail("order", "'order' is " + std::to_string(order) + ", but it must lie in [2, " + std::to_string(MAX_ORDER) +
                            "]: the part looks the same after a turn by 360 degrees / order");
-  return Pose(Eigen::Translation3d(axis.origin) * Eigen::AngleAxisd(2 * M_PI / order, axis.direction) *
-              Eigen::Translation3d(-axis.origin));
+  return rotationAbout(axis, 2 * M_PI / order);
 }
 
 /// From a file of the BOP benchmark that describes the same mesh.

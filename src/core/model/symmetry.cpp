@@ -25,12 +25,6 @@ bool contains(const std::vector<Pose>& group, const Pose& element, const Symmetr
   });
 }
 
-Pose rotationAbout(const Symmetry::Axis& axis, double angle)
-{
-  return Pose(Eigen::Translation3d(axis.origin) * Eigen::AngleAxisd(angle, axis.direction) *
-              Eigen::Translation3d(-axis.origin));
-}
-
 /// The angle about the axis that brings R nearest to the identity: trace(R * R(axis, t)) is a + b cos t + c sin t.
 double nearestAngle(const Eigen::Matrix3d& R, const Eigen::Vector3d& axis)
 {
@@ -52,6 +46,12 @@ std::vector<Pose> flipOnly(const std::vector<Pose>& rotations, const Symmetry::A
   return remaining;
 }
 }  // namespace
+
+Pose rotationAbout(const Symmetry::Axis& axis, double angle)
+{
+  return Pose(Eigen::Translation3d(axis.origin) * Eigen::AngleAxisd(angle, axis.direction) *
+              Eigen::Translation3d(-axis.origin));
+}
 
 std::vector<Pose> Symmetry::sampled(int steps) const
 {

@@ -12,7 +12,7 @@ namespace
 {
 constexpr int MAX_SCENE_POINTS = 800;
 constexpr std::size_t MAX_MODEL_POINTS = 400;
-constexpr float OUTLIER = 9;          // a residual of three tolerances is as wrong as any
+constexpr float OUTLIER = 9;          // squared: off by three halves of the tolerance is as wrong as anything
 constexpr double OTHER_POSE = 0.1;    // of the diameter: nearer rivals are the same for a gripper
 constexpr int FINE_STEPS = 4;         // to either side
 constexpr double FINE_ANGLE = 0.044;  // rad: together half a step of the near symmetries
@@ -28,10 +28,13 @@ Neighbourhood measuredAround(const TrainedModel& model, const Pose& T_camera_obj
 {
   constexpr double REACH = 0.65;  // of the diameter, round the part's middle: rivals stick out a little
   const Eigen::Vector3d center = T_camera_object * model.center;
+  if (center.z() <= 0)
+    return {};  // behind the camera
   const Eigen::Vector2d middle = grid.camera.project(center);
   const double radius = REACH * model.diameter / grid.pitch(center.z());
-  const int step = std::max(1, static_cast<int>(std::ceil(2 * radius / std::sqrt(double(MAX_SCENE_POINTS)))));
-  const auto clampTo = [](double value, int count) { return std::clamp(static_cast<int>(value), 0, count - 1); };
+  const int step =
+      std::max(1, static_cast<int>(std::ceil(2 * radius / std::sqrt(static_cast<double>(MAX_SCENE_POINTS)))));
+  const auto clampTo = [](double value, int count) { return static_cast<int>(std::clamp(value, 0.0, count - 1.0)); };
   const Eigen::Isometry3f T_object_camera = T_camera_object.inverse().cast<float>();
   Neighbourhood around;
   around.area_per_point = std::pow(step * grid.pitch(center.z()) / model.parameters.leaf, 2);
@@ -92,10 +95,13 @@ class Contradiction
 public:
   Contradiction(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
                 const DepthGrid& surroundings, double tolerance)
-    : model_(model), T_camera_object_(T_camera_object), surroundings_(surroundings), tolerance_(tolerance),
-      around_(measuredAround(model, T_camera_object, grid)), samples_(model)
-  {
-  }
+      : model_(model),
+        T_camera_object_(T_camera_object),
+        surroundings_(surroundings),
+        tolerance_(tolerance),
+        around_(measuredAround(model, T_camera_object, grid)),
+        samples_(model)
+  {}
 
   void concern(const std::vector<Eigen::Isometry3f>& motions) { keepConcerned(around_, model_, motions); }
 
@@ -145,6 +151,24 @@ private:
   SurfaceSamples samples_;
 };
 
+/// The best turn about the axis next to one of the steps. \param least contradiction of the step; becomes that of the
+/// turn
+Pose betweenSteps(const Pose& step, const Symmetry::Axis& axis, const Contradiction& contradiction, double& least)
+{
+  Pose best = step;
+  for (int k = -FINE_STEPS; k <= FINE_STEPS; ++k)
+  {
+    const Pose turn = step * rotationAbout(axis, k * FINE_ANGLE);
+    const double against = contradiction(turn);
+    if (against < least)
+    {
+      least = against;
+      best = turn;
+    }
+  }
+  return best;
+}
+
 /// Farthest motion of the part's box corners, modulo its symmetry.
 double farthestMotion(const TrainedModel& model, const Pose& a, const Pose& b)
 {
@@ -157,14 +181,6 @@ double farthestMotion(const TrainedModel& model, const Pose& a, const Pose& b)
     farthest = std::max(farthest, (nearest * corner - b * corner).norm());
   }
   return farthest;
-}
-
-Pose turnAbout(const NearSymmetry& near, double angle)
-{
-  Pose T = Pose::Identity();
-  T.linear() = Eigen::AngleAxisd(angle, near.axis).toRotationMatrix();
-  T.translation() = near.origin - T.linear() * near.origin;
-  return T;
 }
 }  // namespace
 
@@ -187,23 +203,14 @@ RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_ob
   std::vector<double> against(turns.size());
   std::transform(turns.begin(), turns.end(), against.begin(), std::cref(contradiction));
   const auto best = static_cast<std::size_t>(std::min_element(against.begin(), against.end()) - against.begin());
-  Pose turn = turns[best];
   double least = against[best];
   if (best > 0)
   {
     choice.turned = true;
-    for (int k = -FINE_STEPS; k <= FINE_STEPS; ++k)
-    {
-      const Pose fine = turns[best] * turnAbout(model.near_symmetries[best - 1], k * FINE_ANGLE);
-      const double value = contradiction(fine);
-      if (value < least)
-      {
-        least = value;
-        turn = fine;
-      }
-    }
-    choice.T_camera_object = T_camera_object * turn;
-    choice.T_camera_object.linear() = Eigen::Quaterniond(choice.T_camera_object.linear()).normalized().toRotationMatrix();
+    choice.T_camera_object =
+        T_camera_object * betweenSteps(turns[best], model.near_symmetries[best - 1].axis, contradiction, least);
+    choice.T_camera_object.linear() =
+        Eigen::Quaterniond(choice.T_camera_object.linear()).normalized().toRotationMatrix();
   }
   for (std::size_t k = 0; k < turns.size(); ++k)
     if (farthestMotion(model, T_camera_object * turns[k], choice.T_camera_object) > OTHER_POSE * model.diameter)
