@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 //
-// One part in an oriented point set: the six Stanford models moved at random under noise (as in the paper's Tables 1-4), and
-// the UWA parasaurolophus in scene rs1.
-// Usage: benchmark_point_sets DATA_DIR CONFIG_DIR [--trials N] [--set parameter=value ...]
-// DATA_DIR holds stanford/*_100k.ply and uwa/; CONFIG_DIR holds the paper's constants (config/paper of this package).
+// One part in an oriented point set: the six Stanford models moved at random under noise (as in the paper's Tables
+// 1-4), and the UWA parasaurolophus in scene rs1. Usage: benchmark_point_sets DATA_DIR CONFIG_DIR [--trials N] [--set
+// parameter=value ...] DATA_DIR holds stanford/*_100k.ply and uwa/; CONFIG_DIR holds the paper's constants
+// (config/paper of this package).
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -84,7 +84,8 @@ fs::path scaledCopy(const fs::path& file, OrientedPoints& points)
   const fs::path copy = fs::temp_directory_path() / ("scaled_" + file.filename().string());
   std::ofstream out(copy);
   out << "ply\nformat ascii 1.0\nelement vertex " << points.size()
-      << "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n";
+      << "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float "
+         "nz\nend_header\n";
   out.precision(9);
   for (std::size_t i = 0; i < points.size(); ++i)
     out << points.points[i].transpose() << " " << points.normals[i].transpose() << "\n";
@@ -145,7 +146,8 @@ Row runModel(const fs::path& file, const fs::path& config, FeatureKind feature, 
     }
     const Detection& best = result.detections.front();
     row.rate += best.matching_rate / options.trials;
-    row.worst_add = std::max(row.worst_add, averageDistance(model->points.points, best.T_camera_object, truth) / model->diameter);
+    row.worst_add =
+        std::max(row.worst_add, averageDistance(model->points.points, best.T_camera_object, truth) / model->diameter);
     row.milliseconds += 1e3 * result.total_seconds / options.trials;
     for (const auto& count : result.counts)
       if (count.stage == "votes")
@@ -156,14 +158,14 @@ Row runModel(const fs::path& file, const fs::path& config, FeatureKind feature, 
 
 void runStanford(const Options& options)
 {
-  const std::vector<std::pair<const char*, const char*>> models = {{"stanford_bunny_100k.ply", "bunny.yaml"},
-                                                                   {"dragon_100k.ply", "dragon.yaml"},
-                                                                   {"lucy_100k.ply", "statuette.yaml"},
-                                                                   {"xyzrgb_dragon_100k.ply", "chinese_dragon.yaml"},
-                                                                   {"armadillo_100k.ply", "armadillo.yaml"},
-                                                                   {"happy_100k.ply", "buddha.yaml"}};
+  const std::vector<std::pair<const char*, const char*>> models = {
+      {"stanford_bunny_100k.ply", "bunny.yaml"}, {"dragon_100k.ply", "dragon.yaml"},
+      {"lucy_100k.ply", "statuette.yaml"},       {"xyzrgb_dragon_100k.ply", "chinese_dragon.yaml"},
+      {"armadillo_100k.ply", "armadillo.yaml"},  {"happy_100k.ply", "buddha.yaml"}};
   const std::vector<std::pair<const char*, FeatureKind>> features = {
-      {"ppf", FeatureKind::Ppf}, {"cur_ppf_unweighted", FeatureKind::CurPpfUnweighted}, {"cur_ppf", FeatureKind::CurPpf}};
+      {"ppf", FeatureKind::Ppf},
+      {"cur_ppf_unweighted", FeatureKind::CurPpfUnweighted},
+      {"cur_ppf", FeatureKind::CurPpf}};
   for (const auto& [name, feature] : features)
   {
     double rate = 0;
@@ -171,8 +173,8 @@ void runStanford(const Options& options)
     for (const auto& [file, config] : models)
     {
       const Row row = runModel(options.data / "stanford" / file, options.config / config, feature, options);
-      std::printf("%-20s %-26s matching rate %6.2f %%  worst ADD %.4f d  %7.1f ms  %.2e votes\n", name, file, 100 * row.rate,
-                  row.worst_add, row.milliseconds, row.votes);
+      std::printf("%-20s %-26s matching rate %6.2f %%  worst ADD %.4f d  %7.1f ms  %.2e votes\n", name, file,
+                  100 * row.rate, row.worst_add, row.milliseconds, row.votes);
       std::fflush(stdout);
       rate += row.rate / static_cast<double>(models.size());
       worst = std::max(worst, row.worst_add);
@@ -204,7 +206,8 @@ void runUwa(const Options& options)
   part.mesh_file = (options.data / "uwa" / "parasaurolophus_low_normals2.ply").string();
   part.mesh_unit = LengthUnit::Millimetre;
   const auto model = trainPart(part, training, Executor(0));
-  const OrientedPoints scene = loadOrientedPoints((options.data / "uwa" / "rs1_normals.ply").string(), LengthUnit::Millimetre);
+  const OrientedPoints scene =
+      loadOrientedPoints((options.data / "uwa" / "rs1_normals.ply").string(), LengthUnit::Millimetre);
   const Pose truth = readMatrix(options.data / "uwa" / "pseudo_gt_parasaurolophus_rs1.xf");
   const DetectionResult result = Detector({model}, parameters).match(scene, false);
   std::printf("uwa rs1: leaf %.1f mm, %zu model points, %.0f ms\n", 1e3 * model->parameters.leaf, model->points.size(),
@@ -215,8 +218,8 @@ void runUwa(const Options& options)
   {
     const auto& d = poses[i];
     const auto error = poseError(d.T_camera_object, truth, {}, model->center);
-    std::printf("  rank %zu: %.2f mm, %.2f deg of the given pose; matching rate %.3f, score %.3f %s\n", i, 1e3 * error.translation,
-                error.rotation * 180 / M_PI, d.matching_rate, d.score, d.rejection.c_str());
+    std::printf("  rank %zu: %.2f mm, %.2f deg of the given pose; matching rate %.3f, score %.3f %s\n", i,
+                1e3 * error.translation, error.rotation * 180 / M_PI, d.matching_rate, d.score, d.rejection.c_str());
   }
 }
 }  // namespace
@@ -226,7 +229,9 @@ int main(int argc, char** argv)
   try
   {
     if (argc < 3)
-      throw ParameterError("usage: benchmark_point_sets DATA_DIR CONFIG_DIR [--trials N] [--train parameter=value] [--set parameter=value ...]");
+      throw ParameterError(
+          "usage: benchmark_point_sets DATA_DIR CONFIG_DIR [--trials N] [--train parameter=value] [--set "
+          "parameter=value ...]");
     Options options;
     options.data = argv[1];
     options.config = argv[2];
@@ -242,7 +247,7 @@ int main(int argc, char** argv)
       else
         throw ParameterError("unknown option " + name);
     }
-      runUwa(options);
+    runUwa(options);
     if (options.trials > 0)
       runStanford(options);
     return 0;

@@ -35,7 +35,9 @@ struct Options
 Options parse(int argc, char** argv)
 {
   if (argc < 2)
-    throw ParameterError("usage: benchmark_real_bins DATA_DIR [--images DIR] [--preset NAME] [--leaf LENGTH] [--set parameter=value ...]");
+    throw ParameterError(
+        "usage: benchmark_real_bins DATA_DIR [--images DIR] [--preset NAME] [--leaf LENGTH] [--set parameter=value "
+        "...]");
   Options options;
   options.data = argv[1];
   for (int i = 2; i + 1 < argc; i += 2)
@@ -83,7 +85,10 @@ std::vector<Pose> readTruth(const fs::path& file)
     Pose T;
     for (int r = 0; r < 4; ++r)
       for (int c = 0; c < 4; ++c)
-        T.matrix()(r, c) = instance.at("T_camera_object").at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c)).get<double>();
+        T.matrix()(r, c) = instance.at("T_camera_object")
+                               .at(static_cast<std::size_t>(r))
+                               .at(static_cast<std::size_t>(c))
+                               .get<double>();
     T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
     poses.push_back(T);
   }
@@ -118,8 +123,8 @@ struct Totals
   int found = 0;
 };
 
-void report(const fs::path& file, const DetectionResult& result, const TrainedModel& model, const std::vector<Pose>& truth,
-            Totals& totals)
+void report(const fs::path& file, const DetectionResult& result, const TrainedModel& model,
+            const std::vector<Pose>& truth, Totals& totals)
 {
   std::printf("%s: %zu accepted, %.0f ms\n", file.stem().c_str(), result.detections.size(), 1e3 * result.total_seconds);
   for (const auto& T : truth)
@@ -147,8 +152,8 @@ int run(const Options& options)
 {
   const Executor executor(0);
   const auto model = trainPart(elbow(options.data / "pipes" / "Pipe_02.stl"), options.training, executor);
-  std::printf("elbow: diameter %.1f mm, leaf %.2f mm, %zu points, %zu pairs, %d curvature bins\n", 1e3 * model->diameter,
-              1e3 * model->parameters.leaf, model->points.size(), model->table.numEntries(),
+  std::printf("elbow: diameter %.1f mm, leaf %.2f mm, %zu points, %zu pairs, %d curvature bins\n",
+              1e3 * model->diameter, 1e3 * model->parameters.leaf, model->points.size(), model->table.numEntries(),
               model->table.quantizer().curvature_bins);
   const Detector detector({model}, options.parameters);
   Totals totals;
@@ -172,8 +177,8 @@ int run(const Options& options)
     for (const auto& file : clouds(options.data / folder, prefix))
     {
       const auto result = detect(file);
-      std::printf("%s: %zu accepted, %.0f ms; %s\n", file.stem().c_str(), result.detections.size(), 1e3 * result.total_seconds,
-                  result.message.c_str());
+      std::printf("%s: %zu accepted, %.0f ms; %s\n", file.stem().c_str(), result.detections.size(),
+                  1e3 * result.total_seconds, result.message.c_str());
       printScores(result);
       false_ones += result.detections.size();
     }

@@ -38,22 +38,22 @@ struct Criterion
 struct Detection
 {
   std::string part;
-  std::size_t model_index = 0;        ///< into Detector::models()
+  std::size_t model_index = 0;  ///< into Detector::models()
   Pose T_camera_object = Pose::Identity();
-  double score = 0;                   ///< [0, 1], the sort key
-  double matching_rate = 0;           ///< Equation 9, [0, 1]
-  double visible_fraction = 0;        ///< share of the surface facing the camera that was measured there, [0, 1]
-  double rms = 0;                     ///< of the point-to-plane residuals after refinement, metres
-  double votes = 0;                   ///< of its cluster
-  std::vector<Criterion> criteria;    ///< every test with its threshold
-  std::string rejection;              ///< empty: accepted; else one sentence
+  double score = 0;                 ///< [0, 1], the sort key
+  double matching_rate = 0;         ///< Equation 9, [0, 1]
+  double visible_fraction = 0;      ///< share of the surface facing the camera that was measured there, [0, 1]
+  double rms = 0;                   ///< of the point-to-plane residuals after refinement, metres
+  double votes = 0;                 ///< of its cluster
+  std::vector<Criterion> criteria;  ///< every test with its threshold
+  std::string rejection;            ///< empty: accepted; else one sentence
 };
 
 enum class DetectionCode
 {
-  Ok = 0,        ///< at least one detection
-  BinEmpty,      ///< nothing measured inside the limits above the floor
-  NoMatch        ///< something is there, nothing was recognised
+  Ok = 0,    ///< at least one detection
+  BinEmpty,  ///< nothing measured inside the limits above the floor
+  NoMatch    ///< something is there, nothing was recognised
 };
 
 struct StageTime
@@ -73,20 +73,20 @@ struct SegmentationView
 {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> gray;     ///< depth mapped to gray (Section 2.2.1)
-  std::vector<std::int32_t> labels;   ///< 0 none, else segment number
+  std::vector<std::uint8_t> gray;        ///< depth mapped to gray (Section 2.2.1)
+  std::vector<std::int32_t> labels;      ///< 0 none, else segment number
   std::vector<std::int32_t> candidates;  ///< the same, candidate targets only
 };
 
 struct DetectionResult
 {
   DetectionCode code = DetectionCode::NoMatch;
-  std::string message;                 ///< one sentence with numbers
-  bool partial = false;                ///< the deadline passed: what was ready is returned
-  std::vector<Detection> detections;   ///< accepted, best first
-  std::vector<Detection> rejected;     ///< with their reasons, best first, at most DetectorParameters::max_rejected
-  std::vector<StageTime> timing;       ///< in order of the pipeline
-  double total_seconds = 0;            ///< cloud in memory -> ranked detections
+  std::string message;                ///< one sentence with numbers
+  bool partial = false;               ///< the deadline passed: what was ready is returned
+  std::vector<Detection> detections;  ///< accepted, best first
+  std::vector<Detection> rejected;    ///< with their reasons, best first, at most DetectorParameters::max_rejected
+  std::vector<StageTime> timing;      ///< in order of the pipeline
+  double total_seconds = 0;           ///< cloud in memory -> ranked detections
   std::vector<StageCount> counts;
   std::optional<SegmentationView> segmentation;
 };
@@ -100,19 +100,20 @@ public:
 
   struct Request
   {
-    std::optional<Bin> bin;                ///< restricts the search; without it the whole cloud is searched
-    std::vector<std::string> parts;        ///< names; empty: all
-    double deadline = 0;                   ///< seconds from the call; 0: parameters().deadline
-    bool keep_segmentation = false;        ///< fill DetectionResult::segmentation
+    std::optional<Bin> bin;          ///< restricts the search; without it the whole cloud is searched
+    std::vector<std::string> parts;  ///< names; empty: all
+    double deadline = 0;             ///< seconds from the call; 0: parameters().deadline
+    bool keep_segmentation = false;  ///< fill DetectionResult::segmentation
   };
 
   /// \throws CloudError if the cloud cannot be used, ParameterError for an unknown part name
   DetectionResult detect(const pcl::PointCloud<pcl::PointXYZ>& cloud, const Request& request) const;
   DetectionResult detect(const DepthGrid& grid, const Request& request) const;
 
-  /// The (one) part in an unorganized oriented point set: no camera grid, no segmentation; voting, clustering, ICP (point to
-  /// point, since there is no grid, unless switched off) and matching rate only. Best first. For whole scans and for the paper's public data sets.
-  /// \param scene_is_part true: every scene point belongs to the part, so that all count in Equation 9; false: only those
+  /// The (one) part in an unorganized oriented point set: no camera grid, no segmentation; voting, clustering, ICP
+  /// (point to point, since there is no grid, unless switched off) and matching rate only. Best first. For whole scans
+  /// and for the paper's public data sets. \param scene_is_part true: every scene point belongs to the part, so that
+  /// all count in Equation 9; false: only those
   ///   inside the part's bounding box at the pose
   /// \throws ParameterError if the detector holds more than one model; CloudError Empty for no points
   DetectionResult match(const OrientedPoints& scene, bool scene_is_part) const;

@@ -25,8 +25,8 @@ struct DetectorParameters
   ClusteringParameters clustering;
   IcpParameters icp;
   VerificationParameters verification;
-  int num_threads = 0;        // 0: all processors
-  double deadline = 0;        // seconds; 0: none
+  int num_threads = 0;  // 0: all processors
+  double deadline = 0;  // seconds; 0: none
   int max_detections = 50;
   int max_rejected = 20;
 

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
-#include <ros/node_handle.h>
 #include <XmlRpcValue.h>
+#include <ros/node_handle.h>
 
 #include <string>
 #include <utility>

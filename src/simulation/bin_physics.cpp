@@ -47,7 +47,7 @@ struct BinPhysics::Impl
 
 BinPhysics::Impl::Impl(const std::vector<std::shared_ptr<const RigidBodyShape>>& part_shapes,
                        const Eigen::Vector3d& size, const PhysicsParameters& physics)
-  : shapes(bulletShapes(part_shapes)), inner_size(size), parameters(physics)
+    : shapes(bulletShapes(part_shapes)), inner_size(size), parameters(physics)
 {
   checkRanges(parameters);
   Random random(0);
@@ -111,9 +111,8 @@ void BinPhysics::Impl::requireBelowRim()
 
 BinPhysics::BinPhysics(const std::vector<std::shared_ptr<const RigidBodyShape>>& shapes,
                        const Eigen::Vector3d& inner_size, const PhysicsParameters& parameters)
-  : impl_(std::make_unique<Impl>(shapes, inner_size, parameters))
-{
-}
+    : impl_(std::make_unique<Impl>(shapes, inner_size, parameters))
+{}
 BinPhysics::~BinPhysics() = default;
 BinPhysics::BinPhysics(BinPhysics&&) noexcept = default;
 BinPhysics& BinPhysics::operator=(BinPhysics&&) noexcept = default;

@@ -15,7 +15,7 @@ constexpr int SOLVER_ITERATIONS = 20;
 }  // namespace
 
 StaticBox::StaticBox(const Eigen::Vector3d& low, const Eigen::Vector3d& high)
-  : shape(toBullet(0.5 * (high - low))), body(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &shape))
+    : shape(toBullet(0.5 * (high - low))), body(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &shape))
 {
   Pose T = Pose::Identity();
   T.translation() = 0.5 * (low + high);
@@ -23,7 +23,7 @@ StaticBox::StaticBox(const Eigen::Vector3d& low, const Eigen::Vector3d& high)
 }
 
 BinWorld::BinWorld(const Eigen::Vector3d& inner_size, const PhysicsParameters& parameters)
-  : inner_size_(inner_size), parameters_(parameters)
+    : inner_size_(inner_size), parameters_(parameters)
 {
   world_.setGravity(btVector3(0, 0, static_cast<btScalar>(-GRAVITY * UNITS_PER_METRE)));
   world_.getSolverInfo().m_numIterations = SOLVER_ITERATIONS;

@@ -60,7 +60,7 @@ Pose fromBullet(const btTransform& T)
 }
 
 BulletShape::BulletShape(const RigidBodyShape& shape)
-  : name(shape.name), radius(shape.radius), compound(std::make_unique<btCompoundShape>())
+    : name(shape.name), radius(shape.radius), compound(std::make_unique<btCompoundShape>())
 {
   Eigen::Vector3d moments;
   T_object_body.linear() = principalAxes(shape.inertia, moments);

@@ -29,8 +29,8 @@ struct BulletShape
   std::string name;  ///< for messages
   Pose T_object_body = Pose::Identity();
   btScalar mass = 0;
-  btVector3 inertia;  ///< about the principal axes
-  double radius = 0;  ///< metres
+  btVector3 inertia;                     ///< about the principal axes
+  double radius = 0;                     ///< metres
   std::vector<Eigen::Vector3d> corners;  ///< of all pieces, body frame, metres
   std::vector<std::unique_ptr<btConvexHullShape>> pieces;
   std::unique_ptr<btCompoundShape> compound;

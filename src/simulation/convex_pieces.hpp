@@ -17,7 +17,7 @@ struct ConvexPiecesParameters
   /// Depth to which joining may fill hollows of the part, share of its diameter; measured to 1/64 of the part's longest
   /// edge. Hollows within one block are filled.
   double max_filling = 0.02;
-  double block_size = 0.1;    ///< of the blocks from which pieces are put together, share of the diameter
+  double block_size = 0.1;  ///< of the blocks from which pieces are put together, share of the diameter
 };
 
 /// Cuts a part into small blocks and joins neighbours to convex pieces as long as their hull fills little that is not

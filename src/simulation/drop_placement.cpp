@@ -51,9 +51,9 @@ Pose randomDrop(const BulletShape& shape, const DropSpace& space, Random& random
     T_bin_body.translation() = placeAbove(extent, space, random);
     return T_bin_body;
   }
-  throw ParameterError("'" + shape.name + "' is too large for the bin: its farthest point is " + millimetres(shape.radius) +
-                       " from its centre of mass, and the bin is " + millimetres(space.inner_size.x()) + " x " +
-                       millimetres(space.inner_size.y()) +
+  throw ParameterError("'" + shape.name + "' is too large for the bin: its farthest point is " +
+                       millimetres(shape.radius) + " from its centre of mass, and the bin is " +
+                       millimetres(space.inner_size.x()) + " x " + millimetres(space.inner_size.y()) +
                        " inside; take a larger bin, or check the unit of the mesh");
 }
 }  // namespace bin_picking::simulation

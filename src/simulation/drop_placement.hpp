@@ -13,8 +13,8 @@ namespace bin_picking::simulation
 /// Where a part is let go.
 struct DropSpace
 {
-  Eigen::Vector3d inner_size;                ///< of the bin, metres
-  double clearance = 0;                      ///< free height below the part, metres
+  Eigen::Vector3d inner_size;                      ///< of the bin, metres
+  double clearance = 0;                            ///< free height below the part, metres
   std::vector<Eigen::AlignedBox3d> occupied = {};  ///< by what lies in the bin already, frame of the bin
 };
 

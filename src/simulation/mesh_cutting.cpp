@@ -12,7 +12,7 @@ namespace bin_picking::simulation
 {
 namespace
 {
-constexpr double SAME = 1e-7;       // metres: a vertex so near to a cut lies on it
+constexpr double SAME = 1e-7;        // metres: a vertex so near to a cut lies on it
 constexpr double FLAT_SHARE = 0.01;  // of the whole surface: flat faces from here on attract a cut
 
 Eigen::Vector3d doubledArea(const Triangle& t) { return (t[1] - t[0]).cross(t[2] - t[0]); }
@@ -122,8 +122,8 @@ std::vector<Block> cutIntoBlocks(const TriangleMesh& mesh, double size)
 {
   Slab whole;
   for (const auto& t : mesh.triangles)
-    whole.surface.push_back({mesh.vertices[t[0]].cast<double>(), mesh.vertices[t[1]].cast<double>(),
-                             mesh.vertices[t[2]].cast<double>()});
+    whole.surface.push_back(
+        {mesh.vertices[t[0]].cast<double>(), mesh.vertices[t[1]].cast<double>(), mesh.vertices[t[2]].cast<double>()});
   for (const Triangle& t : whole.surface)
     for (const Eigen::Vector3d& corner : t)
       whole.box.extend(corner);

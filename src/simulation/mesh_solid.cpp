@@ -42,8 +42,7 @@ SolidTest::SolidTest(const TriangleMesh& mesh) : mesh_(mesh), rows_(ROWS)
   for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k)
   {
     const auto& t = mesh.triangles[k];
-    const auto [first, last] =
-        std::minmax({mesh.vertices[t[0]].y(), mesh.vertices[t[1]].y(), mesh.vertices[t[2]].y()});
+    const auto [first, last] = std::minmax({mesh.vertices[t[0]].y(), mesh.vertices[t[1]].y(), mesh.vertices[t[2]].y()});
     for (int r = row(static_cast<double>(first)); r <= row(static_cast<double>(last)); ++r)
       rows_[static_cast<std::size_t>(r)].push_back(k);
   }

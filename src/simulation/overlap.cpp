@@ -30,8 +30,8 @@ double squaredDistance(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const
     const double height = (p - a).dot(normal.normalized());
     return height * height;
   }
-  return std::min({squaredDistanceToSegment(p, a, b), squaredDistanceToSegment(p, b, c),
-                   squaredDistanceToSegment(p, c, a)});
+  return std::min(
+      {squaredDistanceToSegment(p, a, b), squaredDistanceToSegment(p, b, c), squaredDistanceToSegment(p, c, a)});
 }
 
 /// How deep the surface of one reaches into the other.
@@ -64,9 +64,9 @@ double OverlapShape::depth(const Eigen::Vector3d& point) const
     return 0;
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& t : mesh_->triangles)
-    nearest = std::min(nearest, squaredDistance(point, mesh_->vertices[t[0]].cast<double>(),
-                                                mesh_->vertices[t[1]].cast<double>(),
-                                                mesh_->vertices[t[2]].cast<double>()));
+    nearest =
+        std::min(nearest, squaredDistance(point, mesh_->vertices[t[0]].cast<double>(),
+                                          mesh_->vertices[t[1]].cast<double>(), mesh_->vertices[t[2]].cast<double>()));
   return std::sqrt(nearest);
 }
 
@@ -76,9 +76,9 @@ Overlap deepestOverlap(const std::vector<PlacedShape>& bodies, const Executor& e
   for (std::size_t a = 0; a < bodies.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
     {
-      const double distance = (bodies[a].T_bin_object * bodies[a].shape->center() -
-                               bodies[b].T_bin_object * bodies[b].shape->center())
-                                  .norm();
+      const double distance =
+          (bodies[a].T_bin_object * bodies[a].shape->center() - bodies[b].T_bin_object * bodies[b].shape->center())
+              .norm();
       if (distance < bodies[a].shape->radius() + bodies[b].shape->radius())
         pairs.push_back({0, a, b});
     }

@@ -46,9 +46,8 @@ Eigen::AlignedBox3d Pile::Item::box() const
 
 Pile::Pile(const std::vector<BulletShape>& shapes, const Eigen::Vector3d& inner_size,
            const PhysicsParameters& parameters)
-  : shapes_(shapes), parameters_(parameters), world_(inner_size, parameters)
-{
-}
+    : shapes_(shapes), parameters_(parameters), world_(inner_size, parameters)
+{}
 
 Pile::Iterator Pile::find(int id)
 {
@@ -127,8 +126,8 @@ double Pile::movedSince(const std::vector<Pose>& before) const
     if (now[k].translation().z() < 0)
       continue;  // fallen out of the bin, it falls for ever
     const double angle = Eigen::AngleAxisd(now[k].linear() * before[k].linear().transpose()).angle();
-    farthest = std::max(farthest, (now[k].translation() - before[k].translation()).norm() +
-                                      angle * shapeOf(items_[k]).radius);
+    farthest =
+        std::max(farthest, (now[k].translation() - before[k].translation()).norm() + angle * shapeOf(items_[k]).radius);
   }
   return farthest;
 }

@@ -32,8 +32,7 @@ Moments momentsOf(const TriangleMesh& mesh, const Eigen::Vector3d& origin)
     const Eigen::Vector3d sum = a + b + c;
     moments.volume += volume;
     moments.first += volume / 4 * sum;
-    moments.second +=
-        volume / 20 * (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+    moments.second += volume / 20 * (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
   }
   return moments;
 }
@@ -42,7 +41,8 @@ void requireClosed(const TriangleMesh& mesh)
 {
   const MeshReport report = inspectMesh(mesh);
   if (report.open_edges > 0 || report.volume <= 0)
-    throw ParameterError("the mesh is not closed (" + std::to_string(report.open_edges) + " of its edges do not have "
+    throw ParameterError("the mesh is not closed (" + std::to_string(report.open_edges) +
+                         " of its edges do not have "
                          "two triangles), so it has no inside and no mass; close it in the CAD program, or export it "
                          "as a solid");
 }

@@ -14,9 +14,9 @@ namespace bin_picking::simulation
 /// What the physics needs of a part.
 struct RigidBodyShape
 {
-  std::string name = "part";        ///< for messages
-  std::vector<ConvexPiece> pieces;  ///< together they cover the part; see convexPieces()
-  double volume = 0;                ///< cubic metres
+  std::string name = "part";                                 ///< for messages
+  std::vector<ConvexPiece> pieces;                           ///< together they cover the part; see convexPieces()
+  double volume = 0;                                         ///< cubic metres
   Eigen::Vector3d center_of_mass = Eigen::Vector3d::Zero();  ///< of the solid at even density, part frame
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();         ///< about the centre of mass, per unit of density
   double radius = 0;                                         ///< farthest vertex from the centre of mass

@@ -46,7 +46,11 @@ Json toJson(const Pose& T)
 std::string cameraJson(const DepthGrid& grid)
 {
   const PinholeCamera& camera = grid.camera;
-  return Json({{"width", grid.width}, {"height", grid.height}, {"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx},
+  return Json({{"width", grid.width},
+               {"height", grid.height},
+               {"fx", camera.fx},
+               {"fy", camera.fy},
+               {"cx", camera.cx},
                {"cy", camera.cy}})
              .dump(1) +
          "\n";

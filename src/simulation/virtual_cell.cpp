@@ -75,10 +75,13 @@ std::vector<int> shuffled(const std::vector<int>& counts, std::uint32_t seed)
 }  // namespace
 
 VirtualCell::VirtualCell(std::vector<CellPart> parts, const CellParameters& parameters, int num_threads)
-  : parts_(checked(std::move(parts))), parameters_(checked(parameters)), bin_(makeBin(parameters.layout)),
-    bin_mesh_(std::make_shared<TriangleMesh>(meshOf(bin_, parameters.layout.table_size))),
-    physics_(rigidBodies(parts_), bin_.inner_size, parameters.physics), sensor_(parameters.sensor, num_threads),
-    executor_(num_threads)
+    : parts_(checked(std::move(parts))),
+      parameters_(checked(parameters)),
+      bin_(makeBin(parameters.layout)),
+      bin_mesh_(std::make_shared<TriangleMesh>(meshOf(bin_, parameters.layout.table_size))),
+      physics_(rigidBodies(parts_), bin_.inner_size, parameters.physics),
+      sensor_(parameters.sensor, num_threads),
+      executor_(num_threads)
 {
   for (const CellPart& part : parts_)
     overlap_shapes_.push_back(std::make_unique<OverlapShape>(part.mesh));
@@ -122,8 +125,8 @@ void VirtualCell::separate(std::uint32_t seed)
     overlap = deepestOverlap();
   }
   if (overlap.depth > MAX_OVERLAP)
-    throw ParameterError("two parts still overlap by " + std::to_string(1000 * overlap.depth) +
-                         " mm after " + std::to_string(MAX_CORRECTIONS) +
+    throw ParameterError("two parts still overlap by " + std::to_string(1000 * overlap.depth) + " mm after " +
+                         std::to_string(MAX_CORRECTIONS) +
                          " corrections, but 1 mm is the most; take a shorter physics/time_step, fewer parts or a "
                          "larger bin");
 }

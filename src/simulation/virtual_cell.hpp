@@ -74,7 +74,8 @@ public:
   VirtualCell(std::vector<CellPart> parts, const CellParameters& parameters, int num_threads = 0);
 
   /// Drops counts[k] parts of kind k, mixed at random, on top of what is there; returns when all rest.
-  /// \throws ParameterError counts that do not fit the parts, none or more than MAX_CELL_PARTS parts in all, a bin too full; in the
+  /// \throws ParameterError counts that do not fit the parts, none or more than MAX_CELL_PARTS parts in all, a bin too
+  /// full; in the
   ///   last case what was dropped stays in the bin
   void fill(const std::vector<int>& counts, std::uint32_t seed, const BinPhysics::Progress& progress = {});
 

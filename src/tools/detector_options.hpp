@@ -20,8 +20,8 @@ std::vector<Option> detectorOptions();
 /// The preset, changed by the configuration file, then by --threads, then by --set.
 DetectorParameters detectorParameters(const Arguments& arguments);
 
-/// The groups of a configuration file. One file may serve training and detection: each takes its own group, and the other
-/// is checked all the same.
+/// The groups of a configuration file. One file may serve training and detection: each takes its own group, and the
+/// other is checked all the same.
 struct Configuration
 {
   TrainingParameters training;

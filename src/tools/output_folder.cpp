@@ -11,14 +11,14 @@ namespace bin_picking::tools
 namespace fs = std::filesystem;
 
 OutputFolder::OutputFolder(const std::string& name, const std::function<bool(const fs::path&)>& is_ours)
-  : target_(fs::absolute(name).lexically_normal())
+    : target_(fs::absolute(name).lexically_normal())
 {
   if (!target_.has_filename())
     target_ = target_.parent_path();  // a slash at the end
   std::error_code error;
-  if (fs::exists(target_, error) &&
-      !(fs::is_directory(target_) && (fs::is_empty(target_) || is_ours(target_))))
-    throw FileError("'" + name + "' exists and holds other things than earlier output of this command; name another folder");
+  if (fs::exists(target_, error) && !(fs::is_directory(target_) && (fs::is_empty(target_) || is_ours(target_))))
+    throw FileError("'" + name +
+                    "' exists and holds other things than earlier output of this command; name another folder");
   partial_ = beside("partial");
   for (fs::path above = target_.parent_path(); !fs::exists(above, error) && above.has_filename();
        above = above.parent_path())

@@ -153,8 +153,8 @@ void report(const CellScan& scan, const VirtualCell& cell, const std::string& na
                                      [](const auto& instance) { return instance.view.visible_fraction >= 0.5; });
   const DepthGrid& grid = scan.scan.grid;
   const auto valid = std::count_if(grid.z.begin(), grid.z.end(), [](float z) { return std::isfinite(z); });
-  std::cout << name << ": " << scan.instances.size() << " parts, " << visible << " at least half visible, deepest overlap "
-            << fixed(1000 * cell.deepestOverlap().depth, 2) << " mm, "
+  std::cout << name << ": " << scan.instances.size() << " parts, " << visible
+            << " at least half visible, deepest overlap " << fixed(1000 * cell.deepestOverlap().depth, 2) << " mm, "
             << fixed(100.0 * static_cast<double>(valid) / static_cast<double>(grid.size()), 1)
             << " % of the pixels measured, " << fixed(seconds, 1) << " s\n";
 }
@@ -178,9 +178,8 @@ void simulate(const Arguments& arguments)
     const auto scene_seed = static_cast<std::uint32_t>(seed + k);
     cell.clear();
     if (std::accumulate(counts.begin(), counts.end(), 0) > 0)
-      cell.fill(counts, scene_seed, [&](double share) {
-        progress.show(name + ": dropping parts, " + fixed(100 * share, 0) + " %");
-      });
+      cell.fill(counts, scene_seed,
+                [&](double share) { progress.show(name + ": dropping parts, " + fixed(100 * share, 0) + " %"); });
     progress.show(name + ": measuring");
     const CellScan scan = cell.scan(scene_seed);
     const fs::path folder = scenes == 1 ? output.path() : output.path() / name;

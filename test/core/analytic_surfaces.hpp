@@ -72,7 +72,8 @@ inline OrientedPoints plane(double side, std::size_t count, std::uint32_t seed =
   std::mt19937 random(seed);
   OrientedPoints points;
   for (std::size_t i = 0; i < count; ++i)
-    add(points, {uniform(random, -side / 2, side / 2), uniform(random, -side / 2, side / 2), 0}, Eigen::Vector3d::UnitZ());
+    add(points, {uniform(random, -side / 2, side / 2), uniform(random, -side / 2, side / 2), 0},
+        Eigen::Vector3d::UnitZ());
   return points;
 }
 

@@ -21,8 +21,8 @@ double moved(const std::vector<Body>& before, const std::vector<Body>& after, in
   double farthest = 0;
   for (const Body& body : before)
     if (body.id != except)
-      farthest = std::max(
-          farthest, (find(after, body.id)->T_bin_object.translation() - body.T_bin_object.translation()).norm());
+      farthest = std::max(farthest,
+                          (find(after, body.id)->T_bin_object.translation() - body.T_bin_object.translation()).norm());
   return farthest;
 }
 
@@ -168,7 +168,9 @@ TEST(BinPhysics, morePartsFallOnThoseThatLieThere)
 
 TEST(BinPhysics, partLargerThanTheBinIsRefused)
 {
-  expectWords(messageOf<ParameterError>([] { binOf({&tee()}, {0.06, 0.06, 0.1}); }),
+  expectWords(messageOf<ParameterError>([] {
+                binOf({&tee()}, {0.06, 0.06, 0.1});
+              }),
               {"too large for the bin", "52 mm", "60 mm x 60 mm"});
 }
 

@@ -28,10 +28,10 @@ constexpr double MAX_DEPTH = 0.001;
 struct Kind
 {
   explicit Kind(TriangleMesh triangles)
-    : mesh(std::make_shared<TriangleMesh>(std::move(triangles))), overlap(mesh),
-      shape(std::make_shared<RigidBodyShape>(makeRigidBodyShape(*mesh)))
-  {
-  }
+      : mesh(std::make_shared<TriangleMesh>(std::move(triangles))),
+        overlap(mesh),
+        shape(std::make_shared<RigidBodyShape>(makeRigidBodyShape(*mesh)))
+  {}
 
   std::shared_ptr<const TriangleMesh> mesh;
   OverlapShape overlap;

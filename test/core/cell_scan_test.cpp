@@ -88,7 +88,8 @@ TEST(CellScan, labelledPointsLieOnThePartsAtTheirTruePoses)
     const TriangleMesh& mesh = *cell.parts()[static_cast<std::size_t>(scan.instances[k].part)].mesh;
     EXPECT_LT(largestSurfaceDistance(points_object[k], mesh), 1e-5) << k;
     EXPECT_EQ(countLabels(scan)[k], scan.instances[k].view.visible_pixels) << k;
-    EXPECT_EQ(scan.instances[k].view.valid_pixels, scan.instances[k].view.visible_pixels) << "the ideal sensor sees all";
+    EXPECT_EQ(scan.instances[k].view.valid_pixels, scan.instances[k].view.visible_pixels)
+        << "the ideal sensor sees all";
   }
 }
 

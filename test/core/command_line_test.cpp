@@ -232,7 +232,7 @@ TEST_F(CommandLine, NothingFoundIsNoFailure)
 {
   ASSERT_EQ(runCommand("simulate " + TUBE + " --empty --size 400x320 -o " + file("empty")).exit_code, 0);
   const Outcome result = runCommand("detect --model " + model() + " --cloud " + file("empty/scene.pcd") + " --bin " +
-                             file("empty/bin.yaml") + " --json " + file("empty.json"));
+                                    file("empty/bin.yaml") + " --json " + file("empty.json"));
   EXPECT_EQ(result.exit_code, 0) << result.text;
   const nlohmann::json json = readJson(file("empty.json"));
   EXPECT_NE(json.at("code"), 0);
@@ -266,7 +266,7 @@ TEST_F(CommandLine, MatchFindsAMovedPointSet)
     ply << 1000 * scene.points[i].transpose() << " " << scene.normals[i].transpose() << "\n";
   ply.close();
   const Outcome result = runCommand("match --model " + model() + " --points " + file("scan.ply") +
-                             " --unit mm --scene-is-part --json " + file("match.json"));
+                                    " --unit mm --scene-is-part --json " + file("match.json"));
   ASSERT_EQ(result.exit_code, 0) << result.text;
   const nlohmann::json json = readJson(file("match.json"));
   ASSERT_FALSE(json.at("detections").empty()) << result.text;

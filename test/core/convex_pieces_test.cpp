@@ -238,8 +238,8 @@ TEST(SolidTest, tellsInsideFromOutsideOfASphere)
   const SolidTest inside(mesh);
   double inner = 1;  // the nearest facet
   for (const auto& t : mesh.triangles)
-    inner = std::min(inner, static_cast<double>(
-                                ((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3).norm()));
+    inner = std::min(
+        inner, static_cast<double>(((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3).norm()));
   Points points(mesh);
   for (int k = 0; k < 20000; ++k)
   {

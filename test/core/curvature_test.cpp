@@ -24,7 +24,8 @@ std::vector<float> curvatureOf(const OrientedPoints& surface, const OrientedPoin
   return estimateCurvature(queries, surface, measure, radius, OPPOSITE_WALL_ANGLE, 8, Executor(2));
 }
 
-OrientedPoints some(const OrientedPoints& points, const std::function<bool(const Eigen::Vector3f&)>& wanted, std::size_t most)
+OrientedPoints some(const OrientedPoints& points, const std::function<bool(const Eigen::Vector3f&)>& wanted,
+                    std::size_t most)
 {
   std::vector<int> indices;
   for (std::size_t i = 0; i < points.size() && indices.size() < most; ++i)
@@ -65,7 +66,8 @@ TEST(QuadricCurvature, tiltedSphereKeepsItsCurvature)
 TEST(MeanCurvature, planeIsFlat)
 {
   const OrientedPoints surface = test::plane(0.1, COUNT);
-  const auto middle = some(surface, [](const Eigen::Vector3f& p) { return p.head<2>().norm() < 0.04f; }, 100);
+  const auto middle = some(
+      surface, [](const Eigen::Vector3f& p) { return p.head<2>().norm() < 0.04f; }, 100);
   for (const float h : curvatureOf(surface, middle, 0.01))
     EXPECT_NEAR(h, 0, 1e-3);
 }
@@ -83,7 +85,8 @@ TEST(MeanCurvature, cylinderIsHalfOneOverR)
 {
   const double R = 0.015;
   const OrientedPoints surface = test::cylinder(R, 0.1, COUNT);
-  const auto middle = some(surface, [](const Eigen::Vector3f& p) { return std::abs(p.z()) < 0.04f; }, 200);
+  const auto middle = some(
+      surface, [](const Eigen::Vector3f& p) { return std::abs(p.z()) < 0.04f; }, 200);
   for (const float h : curvatureOf(surface, middle, 0.004))
     EXPECT_NEAR(h, 0.5 / R, 0.02 / R);
 }
@@ -93,7 +96,8 @@ TEST(MeanCurvature, concaveIsNegative)
   OrientedPoints bore = test::cylinder(0.015, 0.1, COUNT);
   for (auto& n : bore.normals)
     n = -n;  // seen from inside
-  const auto middle = some(bore, [](const Eigen::Vector3f& p) { return std::abs(p.z()) < 0.04f; }, 50);
+  const auto middle = some(
+      bore, [](const Eigen::Vector3f& p) { return std::abs(p.z()) < 0.04f; }, 50);
   for (const float h : curvatureOf(bore, middle, 0.004))
     EXPECT_NEAR(h, -0.5 / 0.015, 0.02 / 0.015);
 }
@@ -103,8 +107,10 @@ TEST(MeanCurvature, torusInsideAndOutside)
   const double ring = 0.04;
   const double tube = 0.01;
   const OrientedPoints surface = test::torus(ring, tube, 2 * COUNT);
-  const auto outer = some(surface, [&](const Eigen::Vector3f& p) { return p.head<2>().norm() > ring + 0.999 * tube; }, 50);
-  const auto inner = some(surface, [&](const Eigen::Vector3f& p) { return p.head<2>().norm() < ring - 0.999 * tube; }, 50);
+  const auto outer = some(
+      surface, [&](const Eigen::Vector3f& p) { return p.head<2>().norm() > ring + 0.999 * tube; }, 50);
+  const auto inner = some(
+      surface, [&](const Eigen::Vector3f& p) { return p.head<2>().norm() < ring - 0.999 * tube; }, 50);
   ASSERT_GT(outer.size(), 10u);
   ASSERT_GT(inner.size(), 10u);
   for (const float h : curvatureOf(surface, outer, 0.003))
@@ -120,7 +126,8 @@ TEST(MeanCurvature, oppositeWallDoesNotCount)
   OrientedPoints back = test::plane(0.1, COUNT, 2);
   for (std::size_t i = 0; i < back.size(); ++i)
     test::add(plate, back.points[i].cast<double>() - Eigen::Vector3d(0, 0, 0.002), -Eigen::Vector3d::UnitZ());
-  const auto middle = some(plate, [](const Eigen::Vector3f& p) { return p.head<2>().norm() < 0.04f; }, 50);
+  const auto middle = some(
+      plate, [](const Eigen::Vector3f& p) { return p.head<2>().norm() < 0.04f; }, 50);
   for (const float h : curvatureOf(plate, middle, 0.01))
     EXPECT_NEAR(h, 0, 1e-3);
 }
@@ -135,7 +142,8 @@ TEST(NormalVariation, knownValues)
   const double R = 0.03;
   const double r = 0.006;
   const OrientedPoints tube = test::cylinder(R, 0.1, COUNT);
-  const auto middle = some(tube, [](const Eigen::Vector3f& p) { return std::abs(p.z()) < 0.04f; }, 100);
+  const auto middle = some(
+      tube, [](const Eigen::Vector3f& p) { return std::abs(p.z()) < 0.04f; }, 100);
   // 240 neighbours at random places: a single value scatters by 6 %, the mean of 100 overlapping discs by about 2 %.
   double mean = 0;
   for (const float v : curvatureOf(tube, middle, r, CurvatureMeasure::NormalVariation))

@@ -83,8 +83,8 @@ TEST(DepthRenderer, sphereHasAnalyticDepth)
       const double miss_squared = center.squaredNorm() - along * along;
       const double share = std::sqrt(miss_squared) / radius;
       const int i = grid.index(u, v);
-      // Triangles with edges of up to 2.9 mm lie up to 17.5 um below the sphere; where the ray slants by share = 0.95 it
-      // meets them 1 / 0.31 times that further on.
+      // Triangles with edges of up to 2.9 mm lie up to 17.5 um below the sphere; where the ray slants by share = 0.95
+      // it meets them 1 / 0.31 times that further on.
       if (share < 0.95)
       {
         const Eigen::Vector3d hit = ray * (along - std::sqrt(radius * radius - miss_squared));

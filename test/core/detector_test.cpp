@@ -23,7 +23,8 @@ int indexOf(const std::vector<Detection>& detections, const Pose& truth)
 {
   for (std::size_t i = 0; i < detections.size(); ++i)
   {
-    const PoseError error = poseError(detections[i].T_camera_object, truth, test::teeModel()->symmetry, test::teeModel()->center);
+    const PoseError error =
+        poseError(detections[i].T_camera_object, truth, test::teeModel()->symmetry, test::teeModel()->center);
     if (error.translation < 0.001 && error.rotation < 0.02)
       return static_cast<int>(i);
   }
@@ -39,7 +40,8 @@ std::string nearestError(const std::vector<Detection>& detections, const Pose& t
     if (error.translation < best.translation)
       best = error;
   }
-  return "the nearest is off by " + std::to_string(1e3 * best.translation) + " mm and " + std::to_string(best.rotation) + " rad";
+  return "the nearest is off by " + std::to_string(1e3 * best.translation) + " mm and " +
+         std::to_string(best.rotation) + " rad";
 }
 
 TEST(Detector, findsEveryFreePartAndNothingElse)
@@ -57,7 +59,9 @@ TEST(Detector, findsEveryFreePartAndNothingElse)
     for (std::size_t i = 0; i < result.detections.size(); ++i)
     {
       const Detection& d = result.detections[i];
-      EXPECT_NEAR((d.T_camera_object.linear() * d.T_camera_object.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0, 1e-9);
+      EXPECT_NEAR(
+          (d.T_camera_object.linear() * d.T_camera_object.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0,
+          1e-9);
       EXPECT_NEAR(d.T_camera_object.linear().determinant(), 1, 1e-9);
       EXPECT_TRUE(d.rejection.empty());
       for (const auto& criterion : d.criteria)
@@ -101,12 +105,15 @@ TEST(Detector, paperPresetFindsItsCandidateTargets)
   Detector::Request request;
   request.bin = test::wideBin();
   request.keep_segmentation = true;
-  const DetectionResult result = detector(DetectorParameters::preset("paper")).detect(test::renderTees(truth, SIGMA), request);
+  const DetectionResult result =
+      detector(DetectorParameters::preset("paper")).detect(test::renderTees(truth, SIGMA), request);
   ASSERT_GE(result.detections.size(), 2u) << result.message;
-  const auto right = std::count_if(truth.begin(), truth.end(), [&](const Pose& T) { return indexOf(result.detections, T) >= 0; });
+  const auto right =
+      std::count_if(truth.begin(), truth.end(), [&](const Pose& T) { return indexOf(result.detections, T) >= 0; });
   EXPECT_GE(right, 2);
-  EXPECT_TRUE(std::any_of(truth.begin(), truth.end(), [&](const Pose& T) { return indexOf(result.detections, T) == 0; }))
-      << "the best-ranked detection is not right";
+  EXPECT_TRUE(std::any_of(truth.begin(), truth.end(), [&](const Pose& T) {
+    return indexOf(result.detections, T) == 0;
+  })) << "the best-ranked detection is not right";
   ASSERT_TRUE(result.segmentation);
   EXPECT_GT(*std::max_element(result.segmentation->labels.begin(), result.segmentation->labels.end()), 1);
   EXPECT_EQ(result.segmentation->gray.size(), result.segmentation->labels.size());

@@ -56,7 +56,8 @@ TEST(PairFeature, isAsymmetricAndInvariant)
   {
     const auto f = pairFeature(points.points[i], points.normals[i], 1, points.points[i + 1], points.normals[i + 1], 2);
     const auto g = pairFeature(moved.points[i], moved.normals[i], 1, moved.points[i + 1], moved.normals[i + 1], 2);
-    const auto back = pairFeature(points.points[i + 1], points.normals[i + 1], 2, points.points[i], points.normals[i], 1);
+    const auto back =
+        pairFeature(points.points[i + 1], points.normals[i + 1], 2, points.points[i], points.normals[i], 1);
     EXPECT_NEAR(f.distance, g.distance, 1e-6);
     EXPECT_NEAR(f.angle_n1_d, g.angle_n1_d, 1e-4);
     EXPECT_NEAR(f.angle_n2_d, g.angle_n2_d, 1e-4);
@@ -108,9 +109,11 @@ TEST(FeatureTable, holdsExactlyThePairsOfBruteForce)
                                    points.normals[j], points.curvature[j]);
         if (i == j || f.distance < 0.005f || q.geometricKey(f) < 0)
           continue;
-        const float alpha = alphaInLocalFrame(alignToLocalFrame(points.points[i], points.normals[i]) * points.points[j]);
+        const float alpha =
+            alphaInLocalFrame(alignToLocalFrame(points.points[i], points.normals[i]) * points.points[j]);
         const auto key = q.key(q.geometricKey(f), q.curvatureBin(f.q1), q.curvatureBin(f.q2));
-        expected[key].insert(TableEntry::make(static_cast<std::uint32_t>(i), classes[i] * classes[j] == -1, toTurnFraction(alpha)).bits);
+        expected[key].insert(
+            TableEntry::make(static_cast<std::uint32_t>(i), classes[i] * classes[j] == -1, toTurnFraction(alpha)).bits);
         ++num_pairs;
       }
     EXPECT_EQ(table.numEntries(), num_pairs);
@@ -156,7 +159,8 @@ TEST(FeatureTable, refusesWhatDoesNotFit)
   const std::vector<std::int8_t> classes(many.size(), 0);
   EXPECT_THROW(FeatureTable(many, classes, {}, 0, quantizerFor(0.003, 1), 0, Executor(1)), ParameterError);
   const OrientedPoints few = cloudWithCurvature(10);
-  EXPECT_THROW(FeatureTable(few, std::vector<std::int8_t>(10, 0), {}, 0, quantizerFor(1e-5, 64), 0, Executor(1)), ParameterError);
+  EXPECT_THROW(FeatureTable(few, std::vector<std::int8_t>(10, 0), {}, 0, quantizerFor(1e-5, 64), 0, Executor(1)),
+               ParameterError);
 }
 
 TEST(FeatureQuantizer, clampsAnglesAndCurvatureButNotDistance)

@@ -17,7 +17,8 @@ constexpr double LEAF = 0.004;
 OrientedPoints sceneOf(const TrainedModel& model, const OrientedPoints& surface, const Pose& T)
 {
   const TrainingParameters& p = model.parameters;
-  return resampleSurface(transformed(surface, T), {p.leaf, p.normal_radius, p.curvature_measure, p.curvature_radius}, Executor(1));
+  return resampleSurface(transformed(surface, T), {p.leaf, p.normal_radius, p.curvature_measure, p.curvature_radius},
+                         Executor(1));
 }
 
 class AnyFeature : public testing::TestWithParam<FeatureKind>
@@ -77,7 +78,8 @@ TEST(Voting, curvatureSavesVotes)
   const auto votesOf = [](FeatureKind feature) {
     const TrainedModel model = test::modelOf(test::lBlock(0.0015, 1), LEAF, feature);
     const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
-    return voteForPoses(model, scene, {}, chooseReferences(test::everyIndex(scene.size()), {}), {}, Deadline(), Executor(2))
+    return voteForPoses(model, scene, {}, chooseReferences(test::everyIndex(scene.size()), {}), {}, Deadline(),
+                        Executor(2))
         .statistics.votes;
   };
   EXPECT_LT(2 * votesOf(FeatureKind::CurPpf), votesOf(FeatureKind::Ppf));
@@ -129,8 +131,7 @@ TEST(Voting, passedDeadlineIsPartialAndHasNoPoses)
   const OrientedPoints scene = sceneOf(model, test::lBlock(0.002, 2), Pose::Identity());
   Deadline deadline(1e-9);
   while (!deadline.passed())
-  {
-  }
+  {}
   const auto votes = voteForPoses(model, scene, {}, {1, 2, 3}, {}, deadline, Executor(1));
   EXPECT_TRUE(votes.partial);
   EXPECT_TRUE(votes.hypotheses.empty());
@@ -181,7 +182,8 @@ TEST(ClusterPoses, joinsWhatIsNearAndSymmetricAndKeepsTheRestApart)
   near.translation().x() += 0.004;
   Pose far = T;
   far.translation().x() += 0.2;
-  const std::vector<Hypothesis> hypotheses = {{T, 10, 0, 0}, {near, 8, 1, 0}, {T * half_turn, 6, 2, 0}, {far, 12, 3, 0}};
+  const std::vector<Hypothesis> hypotheses = {
+      {T, 10, 0, 0}, {near, 8, 1, 0}, {T * half_turn, 6, 2, 0}, {far, 12, 3, 0}};
 
   EXPECT_EQ(clusterPoses(hypotheses, model, {}).size(), 3u);
   model.symmetry.discrete.push_back(half_turn);
@@ -209,7 +211,8 @@ TEST(IcpPointToPoint, isExactOnItsOwnPointsAndRigidOnPlanes)
 
   const OrientedPoints flat = test::plane(0.05, 400);
   const IcpResult on_plane = icpPointToPoint(flat, transformed(flat, T), T, 0.01, icp);
-  EXPECT_NEAR(on_plane.T_camera_object.linear().determinant(), 1, 1e-9) << "a reflection fits a plane as well, but is no pose";
+  EXPECT_NEAR(on_plane.T_camera_object.linear().determinant(), 1, 1e-9)
+      << "a reflection fits a plane as well, but is no pose";
 }
 
 TEST(IcpPointToPoint, withoutCorrespondencesThePoseStaysAndRmsIsNan)

@@ -94,8 +94,12 @@ inline TriangleMesh angleMesh(float leg, float thickness, float width)
 {
   TriangleMesh mesh;
   for (const float z : {0.0f, width})
-    for (const auto& [x, y] : {std::pair<float, float>{0, 0}, {leg, 0}, {leg, thickness}, {thickness, thickness},
-                               {thickness, leg}, {0, leg}})
+    for (const auto& [x, y] : {std::pair<float, float>{0, 0},
+                               {leg, 0},
+                               {leg, thickness},
+                               {thickness, thickness},
+                               {thickness, leg},
+                               {0, leg}})
       mesh.vertices.emplace_back(x, y, z);
   appendQuad(mesh, 0, 3, 2, 1);
   appendQuad(mesh, 0, 5, 4, 3);

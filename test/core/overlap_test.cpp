@@ -41,8 +41,8 @@ TEST(Overlap, spheresPushedIntoEachOther)
   const OverlapShape sphere = shapeOf(sphereMesh(0.02f, 5));
   const Overlap overlap = deepestOverlap({{&sphere, Pose::Identity()}, {&sphere, at(0, 0.03, 0.026)}}, Executor(1));
   const double depth = 0.04 - std::hypot(0.03, 0.026);
-  // Facets lie up to 0.02 mm below the sphere; a point within 1 mm of the deepest one is at most 1^2 / (2 20) mm higher,
-  // against a surface that falls away as much.
+  // Facets lie up to 0.02 mm below the sphere; a point within 1 mm of the deepest one is at most 1^2 / (2 20) mm
+  // higher, against a surface that falls away as much.
   EXPECT_LT(overlap.depth, depth);
   EXPECT_GT(overlap.depth, depth - 0.0001);
 }

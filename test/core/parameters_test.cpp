@@ -85,7 +85,8 @@ TEST(Parameters, refusesWithASentenceAndLeavesTheValueAlone)
 {
   Outer outer;
   const auto visit = visitor(outer);
-  EXPECT_NE(messageOf([&] { setParameter(visit, "inner/stepp=3mm"); }).find("did you mean 'inner/step'"), std::string::npos);
+  EXPECT_NE(messageOf([&] { setParameter(visit, "inner/stepp=3mm"); }).find("did you mean 'inner/step'"),
+            std::string::npos);
   EXPECT_NE(messageOf([&] { setParameter(visit, "step=3mm"); }).find("did you mean 'inner/step'"), std::string::npos);
   EXPECT_NE(messageOf([&] { setParameter(visit, "count=11"); }).find("[0, 10]"), std::string::npos);
   EXPECT_NE(messageOf([&] { setParameter(visit, "count=2.5"); }).find("whole number"), std::string::npos);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 //
-// A small part of the regression set (benchmark/regression.sh): the whole way from CAD over a settled pile and the virtual
-// sensor to judged detections. It gates on counts; times belong to the benchmark.
+// A small part of the regression set (benchmark/regression.sh): the whole way from CAD over a settled pile and the
+// virtual sensor to judged detections. It gates on counts; times belong to the benchmark.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,9 +34,9 @@ class RegressionPart
 {
 public:
   explicit RegressionPart(const std::string& name)
-    : definition_(loadPart(std::string(BIN_PICKING_SOURCE_DIR) + "/config/parts/" + name)),
-      mesh_(std::make_shared<TriangleMesh>(loadMesh(definition_.mesh_file, definition_.mesh_unit))),
-      detector_({trainPart(definition_, {}, Executor(2))}, DetectorParameters::preset("fast"))
+      : definition_(loadPart(std::string(BIN_PICKING_SOURCE_DIR) + "/config/parts/" + name)),
+        mesh_(std::make_shared<TriangleMesh>(loadMesh(definition_.mesh_file, definition_.mesh_unit))),
+        detector_({trainPart(definition_, {}, Executor(2))}, DetectorParameters::preset("fast"))
   {
     shapes_.emplace(name, makePartShape(*mesh_, definition_.symmetry));
   }

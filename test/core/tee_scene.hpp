@@ -14,7 +14,10 @@ namespace bin_picking
 namespace test
 {
 /// The tee of the demo: real enough a part, with a declared half-turn symmetry.
-inline PartDefinition teeDefinition() { return loadPart(std::string(BIN_PICKING_SOURCE_DIR) + "/config/parts/three_way_tube"); }
+inline PartDefinition teeDefinition()
+{
+  return loadPart(std::string(BIN_PICKING_SOURCE_DIR) + "/config/parts/three_way_tube");
+}
 
 /// Trained once per process.
 inline const std::shared_ptr<const TrainedModel>& teeModel()
@@ -26,8 +29,8 @@ inline const std::shared_ptr<const TrainedModel>& teeModel()
 /// A pitch of 0.8 mm at the distance of the parts.
 inline PinholeCamera smallCamera() { return {750, 750, 239.5, 191.5}; }
 
-/// Poses of tees that lie apart from each other at 0.6 m, turned at random, but so that the camera sees what tells their pose:
-/// the branch (z) not behind the run (x), and the run not end-on.
+/// Poses of tees that lie apart from each other at 0.6 m, turned at random, but so that the camera sees what tells
+/// their pose: the branch (z) not behind the run (x), and the run not end-on.
 inline std::vector<Pose> posesApart(std::size_t count, std::uint32_t seed)
 {
   std::mt19937 random(seed);
@@ -79,7 +82,8 @@ inline DepthGrid renderTees(const std::vector<Pose>& poses, double sigma, std::u
 inline Bin wideBin()
 {
   Bin bin;
-  bin.T_camera_bin.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();  // z up = towards the camera
+  bin.T_camera_bin.linear() =
+      Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();  // z up = towards the camera
   bin.T_camera_bin.translation() = Eigen::Vector3d(0, 0, 0.66);
   bin.inner_size = Eigen::Vector3d(0.4, 0.3, 0.15);
   return bin;

@@ -33,7 +33,8 @@ Scene sceneOf(const std::vector<Pose>& poses, double sigma)
 
 PoseEvidence evidenceOf(const Scene& scene, const Pose& T)
 {
-  return gatherEvidence(facingPoints(*test::teeModel(), T, 2000), T, scene.grid, scene.surroundings, scene.normals, 0.0015, {});
+  return gatherEvidence(facingPoints(*test::teeModel(), T, 2000), T, scene.grid, scene.surroundings, scene.normals,
+                        0.0015, {});
 }
 
 OutlineEvidence outlineOf(const Scene& scene, const Pose& T)
@@ -153,8 +154,8 @@ TEST(IcpProjective, removesASmallErrorAndStaysRigid)
     Pose start = truth;
     start.linear() = truth.linear() * Eigen::AngleAxisd(0.06, test::unitVector(random)).toRotationMatrix();
     start.translation() += 0.002 * test::unitVector(random);
-    const IcpResult result = icpProjective(facingPoints(*test::teeModel(), start, 800), scene.grid, scene.normals, start,
-                                           test::teeModel()->parameters.leaf, {});
+    const IcpResult result = icpProjective(facingPoints(*test::teeModel(), start, 800), scene.grid, scene.normals,
+                                           start, test::teeModel()->parameters.leaf, {});
     // sigma 0.1 mm on some 2000 pixels: the statistical error is below 0.01 mm; edges and quantisation leave more.
     EXPECT_LT((result.T_camera_object * test::teeModel()->center - truth * test::teeModel()->center).norm(), 0.0003);
     EXPECT_LT(test::rotationError(result.T_camera_object, truth), 0.008);
@@ -189,7 +190,8 @@ TEST(IcpProjective, withoutDataThePoseStaysAndRmsIsNan)
   const DepthGrid nothing = makeGrid(480, 384, test::smallCamera());
   const std::vector<Eigen::Vector3f> normals(nothing.size(), Eigen::Vector3f::Constant(NAN));
   const auto start = test::posesApart(1, 1)[0];
-  const IcpResult result = icpProjective(facingPoints(*test::teeModel(), start, 500), nothing, normals, start, 0.004, {});
+  const IcpResult result =
+      icpProjective(facingPoints(*test::teeModel(), start, 500), nothing, normals, start, 0.004, {});
   EXPECT_TRUE(std::isnan(result.rms));
   EXPECT_FALSE(result.converged);
   EXPECT_TRUE(result.T_camera_object.matrix() == start.matrix());

@@ -16,10 +16,10 @@ public:
   Deadline() = default;
   /// \param seconds from now; 0 or less: never
   explicit Deadline(double seconds)
-    : end_(seconds > 0 ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)) :
-                         Clock::time_point::max())
-  {
-  }
+      : end_(seconds > 0
+                 ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
+                 : Clock::time_point::max())
+  {}
   bool passed() const { return end_ != Clock::time_point::max() && Clock::now() >= end_; }
 
 private:

@@ -22,8 +22,8 @@ struct ParameterInfo
 
 /// Walks over the fields of a parameter struct. A struct takes part by a member
 ///   void visit(ParameterVisitor& v);
-/// that calls v.field(...) for each field and v.group(name, nested) for nested structs. YAML, command line, rosparam and
-/// the documentation are all made from this one list.
+/// that calls v.field(...) for each field and v.group(name, nested) for nested structs. YAML, command line, rosparam
+/// and the documentation are all made from this one list.
 class ParameterVisitor
 {
 public:
@@ -79,9 +79,9 @@ struct ParameterEntry
 
 using VisitFunction = std::function<void(ParameterVisitor&)>;
 
-/// Sets one parameter from text. A number may carry a unit that fits the field's: mm, cm, m; deg, rad; /mm, /m; ms, s; %.
-/// \param path "matching/d_dist" (a dot in place of the slash is accepted)
-/// \throws ParameterError unknown path (with the nearest known one), not a number, out of range
+/// Sets one parameter from text. A number may carry a unit that fits the field's: mm, cm, m; deg, rad; /mm, /m; ms, s;
+/// %. \param path "matching/d_dist" (a dot in place of the slash is accepted) \throws ParameterError unknown path (with
+/// the nearest known one), not a number, out of range
 void setParameter(const VisitFunction& visit, const std::string& path, const std::string& text);
 
 /// Reads "path=value", as given to --set.

@@ -15,7 +15,7 @@ struct GripperBox
   std::string name;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< metres, at opening 0
   Eigen::Vector3d size = Eigen::Vector3d::Zero();    ///< metres
-  int finger = 0;  ///< 0: fixed to the palm; +1 / -1: moves by +-opening / 2 along Y
+  int finger = 0;                                    ///< 0: fixed to the palm; +1 / -1: moves by +-opening / 2 along Y
 };
 
 struct Gripper

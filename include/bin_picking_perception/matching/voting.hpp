@@ -41,7 +41,7 @@ struct Hypothesis
 struct VotingStatistics
 {
   std::uint64_t references = 0;
-  std::uint64_t pairs = 0;   ///< scene pairs looked up
+  std::uint64_t pairs = 0;  ///< scene pairs looked up
   std::uint64_t votes = 0;
 };
 
@@ -49,17 +49,17 @@ struct VotingResult
 {
   std::vector<Hypothesis> hypotheses;  ///< ordered by reference, then votes
   VotingStatistics statistics;
-  bool partial = false;                ///< the deadline passed
+  bool partial = false;  ///< the deadline passed
 };
 
 /// Every n-th of `candidates`, so that about reference_share of them, but at least min_references, are drawn.
 std::vector<int> chooseReferences(const std::vector<int>& candidates, const VotingParameters& parameters);
 
-/// Sections 2.2.2 and 2.2.3. For each reference point: Equation 5 with every sample within the part's diameter, look-up,
-/// weighted votes (Equation 8) in the accumulator of model points x angle steps, and its peaks as poses (Equation 6).
-/// The result does not depend on the number of threads.
-/// \param scene with curvature. Where it is NaN the point takes part in four dimensions only: it meets every curvature bin
-/// \param curvature_complete per point; 0: the neighbourhood was cut off, and with curvature_wildcard the curvature counts as
+/// Sections 2.2.2 and 2.2.3. For each reference point: Equation 5 with every sample within the part's diameter,
+/// look-up, weighted votes (Equation 8) in the accumulator of model points x angle steps, and its peaks as poses
+/// (Equation 6). The result does not depend on the number of threads. \param scene with curvature. Where it is NaN the
+/// point takes part in four dimensions only: it meets every curvature bin \param curvature_complete per point; 0: the
+/// neighbourhood was cut off, and with curvature_wildcard the curvature counts as
 ///   unknown. Empty: all are complete
 VotingResult voteForPoses(const TrainedModel& model, const OrientedPoints& scene,
                           const std::vector<std::uint8_t>& curvature_complete, const std::vector<int>& references,

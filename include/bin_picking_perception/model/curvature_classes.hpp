@@ -22,8 +22,8 @@ struct CurvatureClasses
 /// NaN is left out. All values alike: both ranges are empty (low_max < 0, high_min infinite), nothing is weighted.
 CurvatureClasses classesFromHistogram(const std::vector<float>& curvature);
 
-/// Fills the curvature part of the quantizer: the given step, or, if it is 0, AUTOMATIC_CURVATURE_BINS equal bins between the
-/// 5th and 95th percentile; one bin (four-dimensional features) where the part's curvature hardly varies.
+/// Fills the curvature part of the quantizer: the given step, or, if it is 0, AUTOMATIC_CURVATURE_BINS equal bins
+/// between the 5th and 95th percentile; one bin (four-dimensional features) where the part's curvature hardly varies.
 /// \param scale what counts as "hardly": a tenth of it (1 / curvature radius, or 1 for the normal variation)
 void chooseCurvatureBins(FeatureQuantizer& quantizer, const std::vector<float>& curvature, double step, double scale);
 

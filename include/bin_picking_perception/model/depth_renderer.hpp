@@ -11,8 +11,8 @@
 
 namespace bin_picking
 {
-/// A z-buffer: what an ideal pinhole camera at the origin sees. Triangles are filled with perspective-correct depth; both
-/// sides of a triangle hide what is behind them.
+/// A z-buffer: what an ideal pinhole camera at the origin sees. Triangles are filled with perspective-correct depth;
+/// both sides of a triangle hide what is behind them.
 class DepthRenderer
 {
 public:

@@ -11,8 +11,8 @@
 
 namespace bin_picking
 {
-/// Signed distance to a part's surface on a regular grid: positive outside. Made once, read in a few nanoseconds. Metres,
-/// part frame. Immutable; safe to read from many threads.
+/// Signed distance to a part's surface on a regular grid: positive outside. Made once, read in a few nanoseconds.
+/// Metres, part frame. Immutable; safe to read from many threads.
 class DistanceField
 {
 public:

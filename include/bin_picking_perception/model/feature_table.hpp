@@ -21,7 +21,7 @@ struct FeatureQuantizer
   double curvature_min = -50;     ///< lower end of the lowest curvature bin; lower values fall into that bin
   int distance_bins = 1;          ///< pairs further apart have no key
   int angle_bins = 15;
-  int curvature_bins = 1;         ///< 1: the key has four dimensions
+  int curvature_bins = 1;  ///< 1: the key has four dimensions
 
   /// Dense key of the four geometric dimensions; -1 if the distance is out of range.
   std::int64_t geometricKey(const PairFeature& f) const;
@@ -53,8 +53,8 @@ struct TableEntry
 /// An angle as a 16-bit fraction of a turn, so that differences wrap without a branch.
 std::uint16_t toTurnFraction(float angle);
 
-/// The hash table of Figure 4: quantised feature -> model pairs. Flat arrays: open addressing for the keys, one array of
-/// entries behind. Immutable once built; safe to read from many threads.
+/// The hash table of Figure 4: quantised feature -> model pairs. Flat arrays: open addressing for the keys, one array
+/// of entries behind. Immutable once built; safe to read from many threads.
 class FeatureTable
 {
 public:
@@ -72,7 +72,8 @@ public:
   /// All ordered pairs of distinct points (further apart than min_distance) that `pairs_allowed` admits.
   /// \param weighted_class per point: -1 low, +1 high, 0 neither (Equation 8)
   /// \param visibility per point the set of views that see it, as bits, `words` words each; empty: every pair counts
-  /// \throws ParameterError more than MAX_REFERENCES points, or more bins than 32 bits hold: a coarser leaf or step helps
+  /// \throws ParameterError more than MAX_REFERENCES points, or more bins than 32 bits hold: a coarser leaf or step
+  /// helps
   FeatureTable(const OrientedPoints& points, const std::vector<std::int8_t>& weighted_class,
                const std::vector<std::uint64_t>& visibility, int words, const FeatureQuantizer& quantizer,
                double min_distance, const Executor& executor);

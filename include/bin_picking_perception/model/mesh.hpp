@@ -40,17 +40,18 @@ double metresPer(LengthUnit unit);
 struct MeshReport
 {
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< edges of the bounding box, metres
-  double diameter = 0;         ///< largest distance between two vertices, metres
-  double area = 0;             ///< square metres
-  double volume = 0;           ///< signed, cubic metres; < 0: turned inside out
-  int open_edges = 0;          ///< edges that do not have exactly two triangles
+  double diameter = 0;                             ///< largest distance between two vertices, metres
+  double area = 0;                                 ///< square metres
+  double volume = 0;                               ///< signed, cubic metres; < 0: turned inside out
+  int open_edges = 0;                              ///< edges that do not have exactly two triangles
   int degenerate_triangles = 0;
   std::vector<std::string> warnings;  ///< sentences: holes, inside-out, odd size, ...
 };
 
 /// Reads STL, PLY or OBJ. Vertices are welded, degenerate triangles dropped, an inside-out closed mesh turned (and both
 /// reported by inspectMesh's warnings when asked on the result of loadMesh).
-/// \throws FileError missing, unreadable, empty, flat (no volume of the bounding box in some direction), not finite, or of a
+/// \throws FileError missing, unreadable, empty, flat (no volume of the bounding box in some direction), not finite, or
+/// of a
 ///   size that no part in a bin has (diameter outside 2 mm ... 2 m: the message names the unit that would fit)
 TriangleMesh loadMesh(const std::string& path, LengthUnit unit);
 
@@ -69,7 +70,8 @@ OrientedPoints sampleSurface(const TriangleMesh& mesh, double spacing, std::uint
 
 /// Reads a PLY of points with normals (x y z nx ny nz; faces, if any, are not used). Normals are normalised; points
 /// with non-finite coordinates or a zero normal are dropped.
-/// \throws FileError missing, unreadable, truncated, no normals, no points left, or of a size that no part has (see loadMesh)
+/// \throws FileError missing, unreadable, truncated, no normals, no points left, or of a size that no part has (see
+/// loadMesh)
 OrientedPoints loadOrientedPoints(const std::string& path, LengthUnit unit);
 
 /// Whether a file is a PLY with points and normals but no faces (a point model and not a mesh).

@@ -15,19 +15,19 @@ namespace bin_picking
 /// Which features the table is keyed by.
 enum class FeatureKind
 {
-  Ppf,              ///< the first four of Equation 5 (Drost et al. 2010)
-  CurPpfUnweighted, ///< all six, every vote counts 1
-  CurPpf            ///< all six, votes weighted by Equation 8
+  Ppf,               ///< the first four of Equation 5 (Drost et al. 2010)
+  CurPpfUnweighted,  ///< all six, every vote counts 1
+  CurPpf             ///< all six, votes weighted by Equation 8
 };
 
 /// Equation 5: (|d|, angle(n1, d), angle(n2, d), angle(n1, n2), q1, q2) with d = p2 - p1. Asymmetric:
 /// feature(1, 2) is not feature(2, 1).
 struct PairFeature
 {
-  float distance = 0;      ///< metres, > 0
-  float angle_n1_d = 0;    ///< [0, pi]
-  float angle_n2_d = 0;    ///< [0, pi]
-  float angle_n1_n2 = 0;   ///< [0, pi]
+  float distance = 0;     ///< metres, > 0
+  float angle_n1_d = 0;   ///< [0, pi]
+  float angle_n2_d = 0;   ///< [0, pi]
+  float angle_n1_n2 = 0;  ///< [0, pi]
   float q1 = 0;
   float q2 = 0;
 };
@@ -38,7 +38,8 @@ float angleBetween(const Eigen::Vector3f& a, const Eigen::Vector3f& b);
 PairFeature pairFeature(const Eigen::Vector3f& p1, const Eigen::Vector3f& n1, float q1, const Eigen::Vector3f& p2,
                         const Eigen::Vector3f& n2, float q2);
 
-/// Rigid motion that puts p into the origin and turns its unit normal n onto the x axis: T_m->g and T_s->g of Equation 6.
+/// Rigid motion that puts p into the origin and turns its unit normal n onto the x axis: T_m->g and T_s->g of
+/// Equation 6.
 Eigen::Isometry3f alignToLocalFrame(const Eigen::Vector3f& p, const Eigen::Vector3f& n);
 
 /// Angle by which a point already in the local frame must turn about x to reach the half-plane z = 0, y >= 0

@@ -36,12 +36,12 @@ struct TrainedModel
   std::uint64_t parameter_hash = 0;
   TrainingParameters parameters;  ///< effective ones: no "automatic" value is left
   Symmetry symmetry;
-  TriangleMesh mesh;              ///< empty for point models
+  TriangleMesh mesh;                                 ///< empty for point models
   Eigen::Vector3d size = Eigen::Vector3d::Zero();    ///< bounding box, metres
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< its middle, part frame
   double diameter = 0;                               ///< largest distance of two surface points, metres
-  OrientedPoints points;    ///< at the leaf, with curvature: the rows of the accumulator
-  OrientedPoints surface;   ///< finer, outer surface only: for verification and refinement
+  OrientedPoints points;                             ///< at the leaf, with curvature: the rows of the accumulator
+  OrientedPoints surface;                            ///< finer, outer surface only: for verification and refinement
   std::vector<ViewTemplate> views;
   CurvatureClasses classes;
   FeatureTable table;
@@ -53,15 +53,15 @@ struct TrainedModel
 /// Fills `field` and `near_symmetries` from the mesh, or from the surface points of a part without one.
 void prepareComparison(TrainedModel& model, const Executor& executor);
 
-/// The offline phase for a mesh file or a point model. `definition.mesh_file` and `mesh_unit` are read; symmetry and the
-/// training overrides are taken from the definition.
-/// \param progress called with a stage name now and then; may be empty
+/// The offline phase for a mesh file or a point model. `definition.mesh_file` and `mesh_unit` are read; symmetry and
+/// the training overrides are taken from the definition. \param progress called with a stage name now and then; may be
+/// empty
 std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, const TrainingParameters& parameters,
                                               const Executor& executor,
                                               const std::function<void(const std::string&)>& progress = {});
 
-/// Hash of what a model is asked to be: name, unit, symmetry and every parameter, with the part's own `training:` values.
-/// \throws ParameterError the part's training values are not valid
+/// Hash of what a model is asked to be: name, unit, symmetry and every parameter, with the part's own `training:`
+/// values. \throws ParameterError the part's training values are not valid
 std::uint64_t requestHash(const PartDefinition& definition, const TrainingParameters& parameters);
 
 /// Version of the model file's layout; other versions are not read.

@@ -34,16 +34,16 @@ struct IcpResult
   Pose T_camera_object = Pose::Identity();
   int iterations = 0;
   int correspondences = 0;
-  double rms = 0;          ///< metres; NaN without correspondences
+  double rms = 0;  ///< metres; NaN without correspondences
   bool converged = false;
 };
 
 /// Point-to-point ICP of scene points against model points. \param max_distance metres
-IcpResult icpPointToPoint(const OrientedPoints& model, const OrientedPoints& scene, const Pose& initial, double max_distance,
-                          const IcpParameters& parameters);
+IcpResult icpPointToPoint(const OrientedPoints& model, const OrientedPoints& scene, const Pose& initial,
+                          double max_distance, const IcpParameters& parameters);
 
-/// Point-to-plane ICP with projective association on the grid. `model_points` are those that face the camera at the initial
-/// pose. Directions in which the surface does not hold the part (a cylinder's axis) are left as they were.
+/// Point-to-plane ICP with projective association on the grid. `model_points` are those that face the camera at the
+/// initial pose. Directions in which the surface does not hold the part (a cylinder's axis) are left as they were.
 /// \param leaf scales the correspondence gate, metres
 IcpResult icpProjective(const OrientedPoints& model_points, const DepthGrid& grid,
                         const std::vector<Eigen::Vector3f>& normals, const Pose& initial, double leaf,

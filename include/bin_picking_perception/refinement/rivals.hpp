@@ -14,8 +14,9 @@ struct RivalChoice
 {
   Pose T_camera_object = Pose::Identity();  ///< the one that the scene contradicts least
   bool turned = false;                      ///< it is another than the given one
-  /// By how much the scene contradicts the best pose that is truly another one (its surface elsewhere by more than a tenth
-  /// of the diameter) more than this one, in squares of a leaf's edge; infinity: there is none. Near 0 the view cannot tell.
+  /// By how much the scene contradicts the best pose that is truly another one (its surface elsewhere by more than a
+  /// tenth of the diameter) more than this one, in squares of a leaf's edge; infinity: there is none. Near 0 the view
+  /// cannot tell.
   double margin = std::numeric_limits<double>::infinity();
 };
 

@@ -14,7 +14,7 @@ namespace bin_picking
 {
 struct VerificationParameters
 {
-  bool enabled = true;                // false: only the matching rate decides, as in the paper
+  bool enabled = true;  // false: only the matching rate decides, as in the paper
   double match_distance = 0.005;
   double min_matching_rate = 0.5;
   double depth_tolerance = 0.02;
@@ -38,14 +38,14 @@ struct VerificationParameters
 /// Point counts of a pose held against the grid.
 struct PoseEvidence
 {
-  int facing = 0;      ///< model points that would be seen if nothing were in front
-  int explained = 0;   ///< measured there, normal agrees
-  int misfit = 0;      ///< measured near there, but off the surface or with another normal
-  int occluded = 0;    ///< something nearer was measured: neither for nor against
-  int violated = 0;    ///< something farther was measured: the part cannot be there
-  int unmeasured = 0;  ///< no data (or outside of the picture)
-  int matched = 0;     ///< measured, not occluded, and within the distance of Equation 9
-  double rms = 0;      ///< point-to-plane residual of the explained points, metres
+  int facing = 0;           ///< model points that would be seen if nothing were in front
+  int explained = 0;        ///< measured there, normal agrees
+  int misfit = 0;           ///< measured near there, but off the surface or with another normal
+  int occluded = 0;         ///< something nearer was measured: neither for nor against
+  int violated = 0;         ///< something farther was measured: the part cannot be there
+  int unmeasured = 0;       ///< no data (or outside of the picture)
+  int matched = 0;          ///< measured, not occluded, and within the distance of Equation 9
+  double rms = 0;           ///< point-to-plane residual of the explained points, metres
   std::vector<int> pixels;  ///< of the explained points, ascending, unique
 
   /// Explained among all that speak for or against the pose, [0, 1].
@@ -63,7 +63,8 @@ const ViewTemplate& nearestView(const TrainedModel& model, const Pose& T_camera_
 OrientedPoints facingPoints(const TrainedModel& model, const Pose& T_camera_object, std::size_t max_points);
 
 /// Surface points that the camera would see at this pose if nothing but the part were there: a z-buffer of the points
-/// themselves. Exact also where the trained views are too far apart (into a bore, along a tube); slower than facingPoints.
+/// themselves. Exact also where the trained views are too far apart (into a bore, along a tube); slower than
+/// facingPoints.
 OrientedPoints visiblePoints(const TrainedModel& model, const Pose& T_camera_object);
 
 /// Every step-th point so that at most max_points remain.
@@ -71,11 +72,12 @@ OrientedPoints thinned(const OrientedPoints& points, std::size_t max_points);
 
 /// \param facing points of the part that face the camera (visiblePoints, facingPoints)
 /// \param tolerance of the distance to the surface, metres
-/// \param grid what belongs to parts; \param surroundings the same grid with the bin and its floor, which are no evidence for
+/// \param grid what belongs to parts; \param surroundings the same grid with the bin and its floor, which are no
+/// evidence for
 ///   a part but may contradict it
 PoseEvidence gatherEvidence(const OrientedPoints& facing, const Pose& T_camera_object, const DepthGrid& grid,
-                            const DepthGrid& surroundings, const std::vector<Eigen::Vector3f>& normals, double tolerance,
-                            const VerificationParameters& parameters);
+                            const DepthGrid& surroundings, const std::vector<Eigen::Vector3f>& normals,
+                            double tolerance, const VerificationParameters& parameters);
 
 /// What the scene does just outside of the part's outline, point by point along it.
 struct OutlineEvidence

@@ -38,7 +38,8 @@ struct InputParameters
 
 /// The organized cloud as a grid: NaN, infinity, (0, 0, 0) and absurdly large values become invalid; the pinhole camera
 /// is fitted to the points.
-/// \throws CloudError Empty, BadLayout, Unorganized, AllInvalid, UnitSuspect (median depth above max_plausible_depth: it
+/// \throws CloudError Empty, BadLayout, Unorganized, AllInvalid, UnitSuspect (median depth above max_plausible_depth:
+/// it
 ///   looks like millimetres), NoProjection (pixel residual above max_projection_error)
 DepthGrid makeGrid(const pcl::PointCloud<pcl::PointXYZ>& cloud, const InputParameters& parameters);
 

@@ -10,12 +10,12 @@ namespace bin_picking
 class Executor;
 class KdTree;
 
-/// How a dense surface becomes the points that are matched; the same for models and for whole scans, because features agree
-/// only between surfaces that were treated alike.
+/// How a dense surface becomes the points that are matched; the same for models and for whole scans, because features
+/// agree only between surfaces that were treated alike.
 struct SurfaceResampling
 {
-  double leaf = 0.003;            ///< voxel edge, metres
-  double normal_radius = 0.004;   ///< of the plane fit, metres
+  double leaf = 0.003;           ///< voxel edge, metres
+  double normal_radius = 0.004;  ///< of the plane fit, metres
   CurvatureMeasure measure = CurvatureMeasure::MeanCurvature;
   double curvature_radius = 0.01;  ///< metres
 };
@@ -24,13 +24,14 @@ struct SurfaceResampling
 /// degrees (an edge keeps both its faces). Order: by voxel.
 OrientedPoints voxelDownsample(const OrientedPoints& dense, double leaf);
 
-/// Normals by plane fits over `support` within the radius, on the side of the given normals. Neighbours whose normal differs
-/// by more than max_normal_angle do not count; where fewer than 5 remain the given normal stays.
-std::vector<Eigen::Vector3f> estimateNormals(const OrientedPoints& queries, const OrientedPoints& support, double radius,
-                                             double max_normal_angle, const Executor& executor);
+/// Normals by plane fits over `support` within the radius, on the side of the given normals. Neighbours whose normal
+/// differs by more than max_normal_angle do not count; where fewer than 5 remain the given normal stays.
+std::vector<Eigen::Vector3f> estimateNormals(const OrientedPoints& queries, const OrientedPoints& support,
+                                             double radius, double max_normal_angle, const Executor& executor);
 
 /// Downsampling, normals and curvature of Section 2.1.1.
-OrientedPoints resampleSurface(const OrientedPoints& dense, const SurfaceResampling& resampling, const Executor& executor);
+OrientedPoints resampleSurface(const OrientedPoints& dense, const SurfaceResampling& resampling,
+                               const Executor& executor);
 
 /// Neighbours on the far side of a thin wall are turned by more than this (rad); those around a square edge by less.
 constexpr double OPPOSITE_WALL_ANGLE = 1.77;

@@ -46,10 +46,13 @@ void Executor::forEach(std::size_t num_tasks, const std::function<void(std::size
     return;
   }
   arena_->arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, num_tasks, 1), [&](const tbb::blocked_range<std::size_t>& range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i)
-        task(i);
-    }, tbb::simple_partitioner());
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, num_tasks, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i)
+            task(i);
+        },
+        tbb::simple_partitioner());
   });
 }
 }  // namespace bin_picking

@@ -146,7 +146,8 @@ std::string didYouMean(const std::string& word, const std::vector<std::string>& 
     // A key given without its group is as good as a near one.
     const auto slash = candidate.rfind('/');
     const std::string last = slash == std::string::npos ? candidate : candidate.substr(slash + 1);
-    const std::size_t distance = std::min(editDistance(word, candidate), editDistance(word, last) + (slash != std::string::npos));
+    const std::size_t distance =
+        std::min(editDistance(word, candidate), editDistance(word, last) + (slash != std::string::npos));
     if (distance < best_distance)
     {
       best_distance = distance;

@@ -109,8 +109,8 @@ public:
     if (!choices.empty() && std::find(choices.begin(), choices.end(), text_) == choices.end())
     {
       const std::string guess = didYouMean(text_, choices);
-      throw ParameterError("parameter '" + wanted_ + "' is '" + text_ + "', but it must be one of: " + join(choices, ", ") +
-                           (guess.empty() ? "" : " (did you mean '" + guess + "'?)"));
+      throw ParameterError("parameter '" + wanted_ + "' is '" + text_ + "', but it must be one of: " +
+                           join(choices, ", ") + (guess.empty() ? "" : " (did you mean '" + guess + "'?)"));
     }
     value = text_;
   }
@@ -161,8 +161,9 @@ void setParameter(const VisitFunction& visit, const std::string& path, const std
   for (const auto& entry : listParameters(visit))
     known.push_back(entry.path);
   const std::string guess = didYouMean(slashed, known);
-  throw ParameterError("unknown parameter '" + slashed + "'" +
-                       (guess.empty() ? "; run 'bin_picking parameters' for the list" : "; did you mean '" + guess + "'?"));
+  throw ParameterError(
+      "unknown parameter '" + slashed + "'" +
+      (guess.empty() ? "; run 'bin_picking parameters' for the list" : "; did you mean '" + guess + "'?"));
 }
 
 void setParameter(const VisitFunction& visit, const std::string& assignment)
@@ -203,8 +204,8 @@ std::string toYaml(const VisitFunction& visit)
     group = entry_group;
     out << (group.empty() ? "" : "  ") << entry.path.substr(slash == std::string::npos ? 0 : slash + 1) << ": "
         << (entry.is_text ? "\"" + entry.value + "\"" : entry.value) << "  # "
-        << (entry.unit.empty() ? "" : entry.unit + "; ") << (entry.range.empty() ? "" : entry.range + "; ") << entry.effect
-        << "\n";
+        << (entry.unit.empty() ? "" : entry.unit + "; ") << (entry.range.empty() ? "" : entry.range + "; ")
+        << entry.effect << "\n";
   }
   return out.str();
 }

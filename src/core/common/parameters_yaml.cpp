@@ -23,8 +23,9 @@ void setNode(const VisitFunction& visit, const YAML::Node& node, const std::stri
     return;
   }
   if (!node.IsScalar())
-    fail(origin, node.Mark(), "parameter '" + path + "' must be a single value" +
-                                  (node.IsNull() ? ", but it is empty" : ", but it is a list"));
+    fail(origin, node.Mark(),
+         "parameter '" + path + "' must be a single value" +
+             (node.IsNull() ? ", but it is empty" : ", but it is a list"));
   try
   {
     setParameter(visit, path, node.Scalar());

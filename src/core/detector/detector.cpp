@@ -10,7 +10,7 @@
 namespace bin_picking
 {
 Detector::Detector(std::vector<std::shared_ptr<const TrainedModel>> models, DetectorParameters parameters)
-  : models_(std::move(models)), parameters_(std::move(parameters)), executor_(parameters_.num_threads)
+    : models_(std::move(models)), parameters_(std::move(parameters)), executor_(parameters_.num_threads)
 {
   if (models_.empty())
     throw ParameterError("a detector needs at least one trained model, but none was given");
@@ -33,7 +33,8 @@ std::vector<std::size_t> Detector::requestedModels(const Request& request) const
     if (std::count(known.begin(), known.end(), part) == 0)
     {
       const std::string guess = didYouMean(part, known);
-      throw ParameterError("the part '" + part + "' is not loaded" + (guess.empty() ? "" : "; did you mean '" + guess + "'?"));
+      throw ParameterError("the part '" + part + "' is not loaded" +
+                           (guess.empty() ? "" : "; did you mean '" + guess + "'?"));
     }
   return indices;
 }
@@ -70,7 +71,8 @@ void reportEmptyBin(DetectionResult& result, double measured, int required)
 {
   result.code = DetectionCode::BinEmpty;
   result.message = "the bin is empty: about " + std::to_string(static_cast<long>(measured)) +
-                   " points lie inside the limits, fewer than " + std::to_string(required) + " (input/empty_bin_points)";
+                   " points lie inside the limits, fewer than " + std::to_string(required) +
+                   " (input/empty_bin_points)";
 }
 }  // namespace
 
@@ -102,7 +104,8 @@ DetectionResult Detector::detect(const DepthGrid& grid, const Request& request) 
     const auto search = planSearch(scene, segmentation, candidates, parameters_);
     clock.lap("segmentation");
     const auto poses = searchPoses(search, model, parameters_, deadline, executor_, clock, result.partial);
-    auto found = refineAndVerify(poses, scene, model, parameters_, comparison_cell, deadline, executor_, clock, result.partial);
+    auto found =
+        refineAndVerify(poses, scene, model, parameters_, comparison_cell, deadline, executor_, clock, result.partial);
     for (auto& pose : found)
       pose.detection.model_index = index;
     std::move(found.begin(), found.end(), std::back_inserter(assessed));

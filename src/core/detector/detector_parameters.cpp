@@ -8,8 +8,11 @@ namespace bin_picking
 {
 void DetectorParameters::visit(ParameterVisitor& v)
 {
-  v.field({"num_threads", "", "threads of a detection; 0 = all processors. The result is the same for any number", 0, 256}, num_threads);
-  v.field({"deadline", "s", "when it passes, what is ready is returned and marked partial; 0 = none", 0, 600}, deadline);
+  v.field(
+      {"num_threads", "", "threads of a detection; 0 = all processors. The result is the same for any number", 0, 256},
+      num_threads);
+  v.field({"deadline", "s", "when it passes, what is ready is returned and marked partial; 0 = none", 0, 600},
+          deadline);
   v.field({"max_detections", "", "best detections that are returned", 1, 1000}, max_detections);
   v.field({"max_rejected", "", "rejected poses that are returned with their reasons", 0, 1000}, max_rejected);
   v.group("input", input);

@@ -13,8 +13,8 @@ namespace bin_picking
 namespace
 {
 /// Scene points inside the part's bounding box, grown by `margin`, at a pose.
-std::vector<Eigen::Vector3f> pointsInBox(const OrientedPoints& scene, const TrainedModel& model, const Pose& T_camera_object,
-                                         double margin)
+std::vector<Eigen::Vector3f> pointsInBox(const OrientedPoints& scene, const TrainedModel& model,
+                                         const Pose& T_camera_object, double margin)
 {
   const Eigen::Isometry3f T_object_camera = T_camera_object.inverse().cast<float>();
   const Eigen::Vector3f center = model.center.cast<float>();
@@ -50,7 +50,8 @@ Detection assess(const PoseCluster& cluster, const OrientedPoints& scene, const 
   const double matched = detection.matching_rate * static_cast<double>(object_points.size());
   detection.visible_fraction = std::min(1.0, matched / (0.5 * static_cast<double>(model.points.size())));
   detection.score = detection.matching_rate * std::sqrt(detection.visible_fraction);
-  detection.criteria.push_back({"matching_rate", detection.matching_rate, parameters.verification.min_matching_rate, false});
+  detection.criteria.push_back(
+      {"matching_rate", detection.matching_rate, parameters.verification.min_matching_rate, false});
   if (!detection.criteria.front().passed())
     detection.rejection = failureText(detection.criteria.front());
   return detection;
@@ -60,7 +61,8 @@ Detection assess(const PoseCluster& cluster, const OrientedPoints& scene, const 
 DetectionResult Detector::match(const OrientedPoints& scene, bool scene_is_part) const
 {
   if (models_.size() != 1)
-    throw ParameterError("matching a point set takes one model, but the detector holds " + std::to_string(models_.size()));
+    throw ParameterError("matching a point set takes one model, but the detector holds " +
+                         std::to_string(models_.size()));
   if (scene.empty())
     throw CloudError(CloudFault::Empty, "the point set to be searched holds no points");
   const TrainedModel& model = *models_.front();
@@ -86,7 +88,8 @@ DetectionResult Detector::match(const OrientedPoints& scene, bool scene_is_part)
   constexpr std::size_t MAX_REFINED = 10;
   std::vector<Detection> detections(std::min(poses.size(), MAX_REFINED));
   executor_.forEach(detections.size(), [&](std::size_t i) {
-    detections[i] = assess({poses[i].T_camera_object, poses[i].votes, 0}, regions.front().samples, model, parameters_, scene_is_part);
+    detections[i] = assess({poses[i].T_camera_object, poses[i].votes, 0}, regions.front().samples, model, parameters_,
+                           scene_is_part);
   });
   clock.lap("refinement");
   std::stable_sort(detections.begin(), detections.end(),

@@ -10,8 +10,8 @@
 
 namespace bin_picking
 {
-PreparedScene reduceScene(const DepthGrid& raw, const Bin* bin, const TrainedModel& model, const DetectorParameters& parameters,
-                          StageClock& clock)
+PreparedScene reduceScene(const DepthGrid& raw, const Bin* bin, const TrainedModel& model,
+                          const DetectorParameters& parameters, StageClock& clock)
 {
   PreparedScene scene;
   if (bin)
@@ -92,7 +92,8 @@ std::vector<int> allIndices(std::size_t count)
 }  // namespace
 
 std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentation& segmentation,
-                                     const std::vector<CandidateTarget>& candidates, const DetectorParameters& parameters)
+                                     const std::vector<CandidateTarget>& candidates,
+                                     const DetectorParameters& parameters)
 {
   std::vector<SearchRegion> regions;
   const auto members = samplesByLabel(scene.samples, segmentation);
@@ -109,7 +110,8 @@ std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentat
     }
     return regions;
   }
-  // Everything may vote; candidate targets get references of their own on top, so that the parts that lie free are seen well.
+  // Everything may vote; candidate targets get references of their own on top, so that the parts that lie free are seen
+  // well.
   SearchRegion region;
   const std::vector<int> everything = chooseReferences(allIndices(scene.samples.size()), parameters.voting);
   std::set<int> references(everything.begin(), everything.end());
@@ -126,8 +128,8 @@ std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentat
 }
 
 std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, const TrainedModel& model,
-                                      const DetectorParameters& parameters, const Deadline& deadline, const Executor& executor,
-                                      StageClock& clock, bool& partial)
+                                      const DetectorParameters& parameters, const Deadline& deadline,
+                                      const Executor& executor, StageClock& clock, bool& partial)
 {
   std::vector<Hypothetical> poses;
   for (const auto& region : regions)

@@ -23,17 +23,17 @@ struct PreparedScene
   std::vector<Eigen::Vector3f> normals;  ///< per pixel of the working grid
   double noise = 0;                      ///< of the depth, metres
   SceneSamples samples;
-  std::optional<Bin> bin;                ///< as given with the request
+  std::optional<Bin> bin;  ///< as given with the request
 };
 
-/// Where poses are searched: samples that take part, and those of them that vote. One per candidate target in the `paper`
-/// preset; one for everything where segments are only a hint.
+/// Where poses are searched: samples that take part, and those of them that vote. One per candidate target in the
+/// `paper` preset; one for everything where segments are only a hint.
 struct SearchRegion
 {
   SceneSamples samples;
   std::vector<int> references;  ///< into samples
   int keep_clusters = 0;
-  bool is_candidate = false;    ///< the samples are one candidate target: the "object points" of Equation 9
+  bool is_candidate = false;  ///< the samples are one candidate target: the "object points" of Equation 9
 };
 
 /// A cluster on its way to a detection.
@@ -45,8 +45,8 @@ struct Hypothetical
 };
 
 /// Reduction, limits and outliers; the rest follows only if there is anything.
-PreparedScene reduceScene(const DepthGrid& raw, const Bin* bin, const TrainedModel& model, const DetectorParameters& parameters,
-                          StageClock& clock);
+PreparedScene reduceScene(const DepthGrid& raw, const Bin* bin, const TrainedModel& model,
+                          const DetectorParameters& parameters, StageClock& clock);
 
 /// Measured raw pixels inside the region, estimated from the working grid.
 double measuredPoints(const PreparedScene& scene);
@@ -56,12 +56,13 @@ void describeScene(PreparedScene& scene, const TrainedModel& model, const Detect
                    const Executor& executor, StageClock& clock);
 
 std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentation& segmentation,
-                                     const std::vector<CandidateTarget>& candidates, const DetectorParameters& parameters);
+                                     const std::vector<CandidateTarget>& candidates,
+                                     const DetectorParameters& parameters);
 
 /// Voting and clustering in every region. \param partial set if the deadline passed
 std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, const TrainedModel& model,
-                                      const DetectorParameters& parameters, const Deadline& deadline, const Executor& executor,
-                                      StageClock& clock, bool& partial);
+                                      const DetectorParameters& parameters, const Deadline& deadline,
+                                      const Executor& executor, StageClock& clock, bool& partial);
 
 /// A refined pose with the image cells that it explains.
 struct Assessed

@@ -8,12 +8,11 @@
 namespace bin_picking
 {
 Accumulator::Accumulator(std::size_t num_model_points, int num_angles)
-  : num_rows_(num_model_points),
-    num_angles_(static_cast<std::uint32_t>(num_angles)),
-    row_size_((static_cast<std::size_t>(num_angles) + ROW - 1) / ROW * ROW),
-    cells_(num_model_points * row_size_, 0)
-{
-}
+    : num_rows_(num_model_points),
+      num_angles_(static_cast<std::uint32_t>(num_angles)),
+      row_size_((static_cast<std::size_t>(num_angles) + ROW - 1) / ROW * ROW),
+      cells_(num_model_points * row_size_, 0)
+{}
 
 void Accumulator::clear() { std::fill(cells_.begin(), cells_.end(), 0u); }
 

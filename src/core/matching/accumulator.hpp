@@ -28,7 +28,8 @@ public:
   };
 
   /// The best cell of every row that reaches min_share of the best cell of all, strongest first (ties: lower row).
-  /// \param sum_adjacent a cell counts together with its next neighbour in alpha, and alpha is interpolated between the two
+  /// \param sum_adjacent a cell counts together with its next neighbour in alpha, and alpha is interpolated between the
+  /// two
   std::vector<Peak> peaks(bool sum_adjacent, double min_share) const;
 
 private:

@@ -10,9 +10,11 @@ namespace bin_picking
 {
 void ClusteringParameters::visit(ParameterVisitor& v)
 {
-  v.field({"distance", "", "poses nearer than this share of the diameter (at the part's centre) may be one", 0.001, 1}, distance);
+  v.field({"distance", "", "poses nearer than this share of the diameter (at the part's centre) may be one", 0.001, 1},
+          distance);
   v.field({"angle", "rad", "poses turned by less than this may be one", 0.01, 3.2}, angle);
-  v.field({"max_clusters", "", "strongest clusters that are looked at further; more find more hidden parts and cost time", 1, 100000},
+  v.field({"max_clusters", "",
+           "strongest clusters that are looked at further; more find more hidden parts and cost time", 1, 100000},
           max_clusters);
 }
 
@@ -36,7 +38,8 @@ double rotationAngle(const Pose& a, const Pose& b)
 void sortByStrength(std::vector<Hypothesis>& hypotheses)
 {
   std::sort(hypotheses.begin(), hypotheses.end(), [](const Hypothesis& a, const Hypothesis& b) {
-    return std::make_tuple(-a.votes, a.reference, a.model_point) < std::make_tuple(-b.votes, b.reference, b.model_point);
+    return std::make_tuple(-a.votes, a.reference, a.model_point) <
+           std::make_tuple(-b.votes, b.reference, b.model_point);
   });
 }
 
@@ -97,7 +100,8 @@ std::vector<PoseCluster> clusterPoses(std::vector<Hypothesis> hypotheses, const 
     cluster->weights.push_back(hypothesis.votes);
     cluster->votes += hypothesis.votes;
   }
-  std::stable_sort(clusters.begin(), clusters.end(), [](const Cluster& a, const Cluster& b) { return a.votes > b.votes; });
+  std::stable_sort(clusters.begin(), clusters.end(),
+                   [](const Cluster& a, const Cluster& b) { return a.votes > b.votes; });
 
   const std::size_t kept = std::min(clusters.size(), static_cast<std::size_t>(parameters.max_clusters));
   std::vector<PoseCluster> result;

@@ -8,9 +8,9 @@
 namespace bin_picking
 {
 FastQuantizer::FastQuantizer(const FeatureQuantizer& quantizer)
-  : inverse_step_(static_cast<float>(1 / quantizer.distance_step)),
-    distance_bins_(quantizer.distance_bins),
-    angle_bins_(quantizer.angle_bins)
+    : inverse_step_(static_cast<float>(1 / quantizer.distance_step)),
+      distance_bins_(quantizer.distance_bins),
+      angle_bins_(quantizer.angle_bins)
 {
   constexpr float BEYOND = -2;
   for (int i = 1; i < quantizer.angle_bins; ++i)
@@ -21,13 +21,15 @@ FastQuantizer::FastQuantizer(const FeatureQuantizer& quantizer)
     // The largest cosine of the cell gives its smallest bin.
     const double highest = std::min(1.0, (cell + 1) / (CELLS / 2 - 0.5) - 1);
     const auto bin = static_cast<int>(std::acos(highest) / quantizer.angle_step);
-    first_bin_[static_cast<std::size_t>(cell)] = static_cast<std::int16_t>(std::max(0, std::min(bin, quantizer.angle_bins - 1) - 1));
+    first_bin_[static_cast<std::size_t>(cell)] =
+        static_cast<std::int16_t>(std::max(0, std::min(bin, quantizer.angle_bins - 1) - 1));
   }
 }
 
 std::uint16_t turnFraction(float y, float x)
 {
-  // Octant by octant: atan(q) / 2 pi for q in [0, 1] by an odd polynomial of degree 7 (minimax fit; error 0.005 degrees).
+  // Octant by octant: atan(q) / 2 pi for q in [0, 1] by an odd polynomial of degree 7 (minimax fit; error 0.005
+  // degrees).
   const float ax = std::abs(x);
   const float ay = std::abs(y);
   const float larger = std::max(ax, ay);

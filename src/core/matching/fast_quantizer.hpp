@@ -10,8 +10,8 @@
 
 namespace bin_picking
 {
-/// FeatureQuantizer::geometricKey for millions of pairs: the steps of an angle are found on its cosine, without acos. Agrees
-/// with it but for angles that lie on a step to within float rounding.
+/// FeatureQuantizer::geometricKey for millions of pairs: the steps of an angle are found on its cosine, without acos.
+/// Agrees with it but for angles that lie on a step to within float rounding.
 class FastQuantizer
 {
 public:
@@ -42,7 +42,7 @@ private:
   float inverse_step_;
   std::int64_t distance_bins_;
   std::int64_t angle_bins_;
-  std::vector<float> limits_;                ///< cosine at the upper end of each bin; the last is never reached
+  std::vector<float> limits_;  ///< cosine at the upper end of each bin; the last is never reached
   std::array<std::int16_t, CELLS> first_bin_{};
 };
 

@@ -7,8 +7,8 @@
 
 namespace bin_picking
 {
-/// Scene points in square columns of the x-y plane, so that the neighbours of a reference point are found without a tree:
-/// they are few thousand in a few cells.
+/// Scene points in square columns of the x-y plane, so that the neighbours of a reference point are found without a
+/// tree: they are few thousand in a few cells.
 class TileIndex
 {
 public:

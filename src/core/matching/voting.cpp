@@ -17,24 +17,32 @@ namespace bin_picking
 {
 void VotingParameters::visit(ParameterVisitor& v)
 {
-  v.field({"reference_share", "", "share of the scene samples that vote; voting time is proportional to it", 0.001, 1}, reference_share);
+  v.field({"reference_share", "", "share of the scene samples that vote; voting time is proportional to it", 0.001, 1},
+          reference_share);
   v.field({"min_references", "", "at least so many reference points (or all samples)", 1, 100000}, min_references);
-  v.field({"max_pair_distance", "", "reach of a reference point as a share of the diameter; less is faster and less specific", 0.1, 1},
+  v.field({"max_pair_distance", "",
+           "reach of a reference point as a share of the diameter; less is faster and less specific", 0.1, 1},
           max_pair_distance);
-  v.field({"weight", "", "W of Equation 8, for pairs of a low- and a high-curvature point (the paper: 2 to 8)", 1, 64}, weight);
-  v.field({"curvature_spread", "", "share of a curvature bin at either end from which the neighbouring bin is looked up too", 0, 0.5},
+  v.field({"weight", "", "W of Equation 8, for pairs of a low- and a high-curvature point (the paper: 2 to 8)", 1, 64},
+          weight);
+  v.field({"curvature_spread", "",
+           "share of a curvature bin at either end from which the neighbouring bin is looked up too", 0, 0.5},
           curvature_spread);
-  v.field({"curvature_wildcard", "", "points whose neighbourhood is cut off meet every curvature bin"}, curvature_wildcard);
-  v.field({"max_bucket", "", "longer entries of the table are skipped (planes, cylinders); 0 = none", 0, 10000000}, max_bucket);
+  v.field({"curvature_wildcard", "", "points whose neighbourhood is cut off meet every curvature bin"},
+          curvature_wildcard);
+  v.field({"max_bucket", "", "longer entries of the table are skipped (planes, cylinders); 0 = none", 0, 10000000},
+          max_bucket);
   v.field({"peaks_per_reference", "", "most poses that one reference point may propose", 1, 20}, peaks_per_reference);
-  v.field({"min_peak_share", "", "further poses of a reference point need this share of its highest vote", 0, 1}, min_peak_share);
+  v.field({"min_peak_share", "", "further poses of a reference point need this share of its highest vote", 0, 1},
+          min_peak_share);
   v.field({"sum_adjacent_angles", "", "count votes of two neighbouring steps of alpha together"}, sum_adjacent_angles);
 }
 
 std::vector<int> chooseReferences(const std::vector<int>& candidates, const VotingParameters& parameters)
 {
   const auto count = static_cast<double>(candidates.size());
-  const double wanted = std::min(count, std::max(parameters.reference_share * count, static_cast<double>(parameters.min_references)));
+  const double wanted =
+      std::min(count, std::max(parameters.reference_share * count, static_cast<double>(parameters.min_references)));
   std::vector<int> references;
   references.reserve(static_cast<std::size_t>(wanted) + 1);
   for (double next = 0; next < count && wanted > 0; next += count / wanted)
@@ -115,7 +123,8 @@ std::size_t collectLookups(const Scene& scene, std::size_t reference, std::vecto
       return;
     const Eigen::Vector3f& n2 = scene.points.normals[i];
     const float distance = std::sqrt(squared_distance);
-    const std::int64_t geometric = scene.geometry.geometricKey(distance, n1.dot(d) / distance, n2.dot(d) / distance, n1.dot(n2));
+    const std::int64_t geometric =
+        scene.geometry.geometricKey(distance, n1.dot(d) / distance, n2.dot(d) / distance, n1.dot(n2));
     if (geometric < 0)
       return;
     ++pairs;
@@ -130,7 +139,8 @@ std::size_t collectLookups(const Scene& scene, std::size_t reference, std::vecto
 std::uint64_t castVotes(const Scene& scene, const std::vector<Lookup>& lookups, Accumulator& accumulator)
 {
   const FeatureTable& table = scene.model.table;
-  const std::uint32_t longest = scene.parameters.max_bucket > 0 ? static_cast<std::uint32_t>(scene.parameters.max_bucket) : ~0u;
+  const std::uint32_t longest =
+      scene.parameters.max_bucket > 0 ? static_cast<std::uint32_t>(scene.parameters.max_bucket) : ~0u;
   const bool weighted = scene.model.parameters.feature == FeatureKind::CurPpf;
   const std::uint32_t weight = weighted ? static_cast<std::uint32_t>(scene.parameters.weight) : 1;
   std::uint64_t votes = 0;
@@ -237,8 +247,13 @@ VotingResult voteForPoses(const TrainedModel& model, const OrientedPoints& point
                           const VotingParameters& parameters, const Deadline& deadline, const Executor& executor)
 {
   const auto reach = static_cast<float>(parameters.max_pair_distance * model.diameter);
-  const Scene scene{model, points, parameters, curvatureBins(points, curvature_complete, model.table.quantizer(), parameters),
-                    FastQuantizer(model.table.quantizer()), TileIndex(points.points, reach / 4), reach};
+  const Scene scene{model,
+                    points,
+                    parameters,
+                    curvatureBins(points, curvature_complete, model.table.quantizer(), parameters),
+                    FastQuantizer(model.table.quantizer()),
+                    TileIndex(points.points, reach / 4),
+                    reach};
   const auto num_angles = static_cast<int>(std::lround(2 * M_PI / model.parameters.d_angle));
   AccumulatorPool pool(model.points.size(), num_angles);
 

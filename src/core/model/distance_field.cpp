@@ -10,7 +10,7 @@
 namespace bin_picking
 {
 DistanceField::DistanceField(const OrientedPoints& surface, double cell, double band, const Executor& executor)
-  : band_(static_cast<float>(band)), inverse_cell_(static_cast<float>(1 / cell))
+    : band_(static_cast<float>(band)), inverse_cell_(static_cast<float>(1 / cell))
 {
   if (surface.empty())
     return;
@@ -36,7 +36,8 @@ DistanceField::DistanceField(const OrientedPoints& surface, double cell, double 
       {
         float& value = values_[(z * rows_ + y) * columns_ + x];
         const Eigen::Vector3f p =
-            low_ + static_cast<float>(cell) * Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+            low_ + static_cast<float>(cell) *
+                       Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
         const auto nearest = tree.nearest(p, band_);
         if (nearest.index < 0)
         {

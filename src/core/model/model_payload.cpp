@@ -217,7 +217,9 @@ namespace
 bool isPlausible(const TrainedModel& model)
 {
   constexpr float MAX_COORDINATE = 10;  // metres
-  const auto is_sane = [](const Eigen::Vector3f& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() < MAX_COORDINATE; };
+  const auto is_sane = [](const Eigen::Vector3f& p) {
+    return p.allFinite() && p.cwiseAbs().maxCoeff() < MAX_COORDINATE;
+  };
   const double leaf = model.parameters.leaf;
   return (model.surface.empty() || (leaf > 0 && leaf < static_cast<double>(MAX_COORDINATE))) &&
          std::all_of(model.surface.points.begin(), model.surface.points.end(), is_sane) &&

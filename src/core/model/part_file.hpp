@@ -10,8 +10,8 @@
 
 namespace bin_picking
 {
-/// The `symmetry:` map of part.yaml. \param part its directory is where files are looked for; a file that is read is added
-/// to its files \throws FileError
+/// The `symmetry:` map of part.yaml. \param part its directory is where files are looked for; a file that is read is
+/// added to its files \throws FileError
 Symmetry readSymmetry(const YamlMap& yaml, PartDefinition& part);
 
 /// The `grasps:` list of part.yaml. \throws FileError

@@ -162,7 +162,9 @@ void prepareComparison(TrainedModel& model, const Executor& executor)
   const double cell = std::max(leaf / 3, boundingBoxDiagonal(model.surface.points) / MAX_CELLS);
   const double band = std::max(1.5 * leaf, 4 * cell);
   const double kept = 0.35 * leaf;  // of the surface that a turn moves by less
-  const OrientedPoints dense = model.mesh.empty() ? model.surface : sampleSurface(model.mesh, cell / 2, static_cast<std::uint32_t>(model.parameters.seed));
+  const OrientedPoints dense =
+      model.mesh.empty() ? model.surface
+                         : sampleSurface(model.mesh, cell / 2, static_cast<std::uint32_t>(model.parameters.seed));
   model.field = DistanceField(dense, cell, band, executor);
   model.near_symmetries = findNearSymmetries(model.surface, model.field, model.symmetry, kept);
 }
@@ -201,8 +203,8 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
   const std::vector<std::int8_t> classes = classify(*model);
   const FeatureQuantizer quantizer = makeQuantizer(*model);
   model->parameters.d_cur = quantizer.curvature_step;
-  model->table =
-      FeatureTable(model->points, classes, visibility, static_cast<int>(words), quantizer, p.min_pair_distance, executor);
+  model->table = FeatureTable(model->points, classes, visibility, static_cast<int>(words), quantizer,
+                              p.min_pair_distance, executor);
   report("near symmetries");
   prepareComparison(*model, executor);
   return model;

@@ -6,12 +6,12 @@ namespace bin_picking
 {
 void TrainingParameters::visit(ParameterVisitor& v)
 {
-  v.field(
-      {"leaf", "m",
-       "voxel edge of the downsampling; 0 = 4 % of the diameter, at most 6 mm or 1.5 %. Voting time grows with about its "
-       "-8th power",
-       0, 0.1},
-      leaf);
+  v.field({"leaf", "m",
+           "voxel edge of the downsampling; 0 = 4 % of the diameter, at most 6 mm or 1.5 %. Voting time grows with "
+           "about its "
+           "-8th power",
+           0, 0.1},
+          leaf);
   v.field({"surface_spacing", "m",
            "distance of the finer surface points for verification and refinement; 0 = half the leaf", 0, 0.05},
           surface_spacing);

@@ -70,8 +70,8 @@ double motion(const Correspondences& pairs, const Pose& before, const Pose& afte
 }
 }  // namespace
 
-IcpResult icpPointToPoint(const OrientedPoints& model, const OrientedPoints& scene, const Pose& initial, double max_distance,
-                          const IcpParameters& parameters)
+IcpResult icpPointToPoint(const OrientedPoints& model, const OrientedPoints& scene, const Pose& initial,
+                          double max_distance, const IcpParameters& parameters)
 {
   constexpr std::size_t MIN_PAIRS = 6;
   const KdTree tree(model.points);
@@ -87,8 +87,8 @@ IcpResult icpPointToPoint(const OrientedPoints& model, const OrientedPoints& sce
     pairs = findCorrespondences(tree, scene, next, max_distance);
   }
   result.correspondences = static_cast<int>(pairs.object.size());
-  result.rms = pairs.object.empty() ? std::numeric_limits<double>::quiet_NaN() :
-                                      std::sqrt(pairs.squared_error / static_cast<double>(pairs.object.size()));
+  result.rms = pairs.object.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                    : std::sqrt(pairs.squared_error / static_cast<double>(pairs.object.size()));
   return result;
 }
 }  // namespace bin_picking

@@ -14,8 +14,8 @@ namespace
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// Normal equations of the point-to-plane error. Rotations are taken about `pivot` and scaled by `radius`, so that all six
-/// unknowns are lengths and their eigenvalues can be compared.
+/// Normal equations of the point-to-plane error. Rotations are taken about `pivot` and scaled by `radius`, so that all
+/// six unknowns are lengths and their eigenvalues can be compared.
 struct NormalEquations
 {
   Matrix6d A = Matrix6d::Zero();
@@ -32,8 +32,8 @@ struct Scene
   float min_cosine;
 };
 
-/// The measured pixel at and around the projection of `point` that lies nearest to it in space; -1 if there is none within
-/// `gate` with a fitting normal.
+/// The measured pixel at and around the projection of `point` that lies nearest to it in space; -1 if there is none
+/// within `gate` with a fitting normal.
 int associate(const Scene& scene, const Eigen::Vector3f& point, const Eigen::Vector3f& normal, float gate)
 {
   const PinholeCamera& camera = scene.grid.camera;
@@ -118,8 +118,9 @@ Pose applyStep(const Pose& T_camera_object, const Vector6d& x, const Eigen::Vect
 }
 }  // namespace
 
-IcpResult icpProjective(const OrientedPoints& model_points, const DepthGrid& grid, const std::vector<Eigen::Vector3f>& normals,
-                        const Pose& initial, double leaf, const IcpParameters& parameters)
+IcpResult icpProjective(const OrientedPoints& model_points, const DepthGrid& grid,
+                        const std::vector<Eigen::Vector3f>& normals, const Pose& initial, double leaf,
+                        const IcpParameters& parameters)
 {
   constexpr int MIN_PAIRS = 12;
   IcpResult result;

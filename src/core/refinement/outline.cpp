@@ -49,7 +49,8 @@ Raster rasterize(const std::vector<Eigen::Vector3f>& points, const PinholeCamera
                       std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    float& depth = raster.depth[static_cast<std::size_t>((cells[i].y() - low.y()) * raster.width + cells[i].x() - low.x())];
+    float& depth =
+        raster.depth[static_cast<std::size_t>((cells[i].y() - low.y()) * raster.width + cells[i].x() - low.x())];
     depth = std::min(depth, points[i].z());
   }
   return raster;
@@ -69,7 +70,8 @@ OutlineEvidence gatherOutlineEvidence(const OrientedPoints& visible, const Pose&
   if (points.empty())
     return evidence;
   const double depth = static_cast<double>(points.front().z());
-  const Raster raster = rasterize(points, grid.camera, std::max(1, static_cast<int>(std::lround(step / grid.pitch(depth)))));
+  const Raster raster =
+      rasterize(points, grid.camera, std::max(1, static_cast<int>(std::lround(step / grid.pitch(depth)))));
 
   constexpr int SIDES[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
   for (int y = 0; y < raster.height; ++y)
@@ -77,7 +79,8 @@ OutlineEvidence gatherOutlineEvidence(const OrientedPoints& visible, const Pose&
       for (const auto& side : SIDES)
       {
         // Two free cells beyond: one alone may be a gap between the points, or the blurred edge itself.
-        if (!raster.covered(x, y) || raster.covered(x + side[0], y + side[1]) || raster.covered(x + 2 * side[0], y + 2 * side[1]))
+        if (!raster.covered(x, y) || raster.covered(x + side[0], y + side[1]) ||
+            raster.covered(x + 2 * side[0], y + 2 * side[1]))
           continue;
         const int u = (raster.u0 + x + 2 * side[0]) * raster.cell + raster.cell / 2;
         const int v = (raster.v0 + y + 2 * side[1]) * raster.cell + raster.cell / 2;

@@ -12,34 +12,55 @@ namespace bin_picking
 {
 void VerificationParameters::visit(ParameterVisitor& v)
 {
-  v.field({"enabled", "", "test poses against the depth grid; false: only the matching rate decides (the paper)"}, enabled);
+  v.field({"enabled", "", "test poses against the depth grid; false: only the matching rate decides (the paper)"},
+          enabled);
   v.field({"match_distance", "m", "distance threshold of the matching rate (Equation 9)", 1e-4, 0.1}, match_distance);
   v.field({"min_matching_rate", "", "smallest accepted matching rate", 0, 1}, min_matching_rate);
-  v.field({"depth_tolerance", "", "distance to the surface that still explains a point, in leaves, noise not counted", 0.0, 5},
+  v.field({"depth_tolerance", "", "distance to the surface that still explains a point, in leaves, noise not counted",
+           0.0, 5},
           depth_tolerance);
-  v.field({"noise_tolerance", "", "what is added to it, in standard deviations of the measured noise", 0, 20}, noise_tolerance);
-  v.field({"max_normal_angle", "rad", "a point whose normal is turned by more is not explained", 0.05, 3.2}, max_normal_angle);
-  v.field({"min_visible_fraction", "", "smallest explained share of the surface that faces the camera; less accepts parts "
-                                       "that are hidden more", 0, 1}, min_visible_fraction);
-  v.field({"min_inlier_share", "", "smallest share of explained points among those that speak for or against a pose", 0, 1},
-          min_inlier_share);
-  v.field({"max_violation_share", "", "largest share of points behind which the sensor saw something", 0, 1}, max_violation_share);
-  v.field({"min_outline_share", "", "smallest share of the outline at which the scene ends, as it must around a part that lies "
-                                    "free; parts packed side by side at one height need less", 0, 1}, min_outline_share);
-  v.field({"min_score", "", "smallest accepted score: inlier share, visible fraction and outline share together", 0, 1}, min_score);
-  v.field({"unmeasured_weight", "", "how much a point without data speaks against a pose, compared to a contradicted one", 0, 1},
+  v.field({"noise_tolerance", "", "what is added to it, in standard deviations of the measured noise", 0, 20},
+          noise_tolerance);
+  v.field({"max_normal_angle", "rad", "a point whose normal is turned by more is not explained", 0.05, 3.2},
+          max_normal_angle);
+  v.field({"min_visible_fraction", "",
+           "smallest explained share of the surface that faces the camera; less accepts parts "
+           "that are hidden more",
+           0, 1},
+          min_visible_fraction);
+  v.field(
+      {"min_inlier_share", "", "smallest share of explained points among those that speak for or against a pose", 0, 1},
+      min_inlier_share);
+  v.field({"max_violation_share", "", "largest share of points behind which the sensor saw something", 0, 1},
+          max_violation_share);
+  v.field({"min_outline_share", "",
+           "smallest share of the outline at which the scene ends, as it must around a part that lies "
+           "free; parts packed side by side at one height need less",
+           0, 1},
+          min_outline_share);
+  v.field({"min_score", "", "smallest accepted score: inlier share, visible fraction and outline share together", 0, 1},
+          min_score);
+  v.field({"unmeasured_weight", "",
+           "how much a point without data speaks against a pose, compared to a contradicted one", 0, 1},
           unmeasured_weight);
-  v.field({"min_turn_margin", "", "a pose is ambiguous if another one, turned so that most of the part looks the same, is "
-                                  "contradicted by less than this more, in squares of a leaf's edge; 0 accepts guesses", 0, 1000},
+  v.field({"min_turn_margin", "",
+           "a pose is ambiguous if another one, turned so that most of the part looks the same, is "
+           "contradicted by less than this more, in squares of a leaf's edge; 0 accepts guesses",
+           0, 1000},
           min_turn_margin);
-  v.field({"min_surface_share", "", "smallest share of the points measured near the part's surface that lie on it; parts of "
-                                    "another shape leave points beside it",
+  v.field({"min_surface_share", "",
+           "smallest share of the points measured near the part's surface that lie on it; parts of "
+           "another shape leave points beside it",
            0, 1},
           min_surface_share);
-  v.field({"max_bin_penetration", "m", "how deep a pose may reach through the floor or a wall of the given bin; as much as the "
-                                       "bin's pose may be wrong", 0, 1},
+  v.field({"max_bin_penetration", "m",
+           "how deep a pose may reach through the floor or a wall of the given bin; as much as the "
+           "bin's pose may be wrong",
+           0, 1},
           max_bin_penetration);
-  v.field({"overlap", "", "a detection that shares more than this part of its pixels with better ones is dropped", 0.01, 1}, overlap);
+  v.field(
+      {"overlap", "", "a detection that shares more than this part of its pixels with better ones is dropped", 0.01, 1},
+      overlap);
   v.field({"max_refined", "", "clusters that are refined and tested in full, best first", 1, 10000}, max_refined);
 }
 
@@ -63,8 +84,7 @@ double PoseEvidence::matchingRate() const
 
 const ViewTemplate& nearestView(const TrainedModel& model, const Pose& T_camera_object)
 {
-  const Eigen::Vector3f direction =
-      (T_camera_object.inverse().translation() - model.center).normalized().cast<float>();
+  const Eigen::Vector3f direction = (T_camera_object.inverse().translation() - model.center).normalized().cast<float>();
   return *std::max_element(model.views.begin(), model.views.end(), [&](const ViewTemplate& a, const ViewTemplate& b) {
     return a.direction.dot(direction) < b.direction.dot(direction);
   });
@@ -107,14 +127,13 @@ class PointTest
 public:
   PointTest(const DepthGrid& grid, const DepthGrid& surroundings, const std::vector<Eigen::Vector3f>& normals,
             double tolerance, const VerificationParameters& parameters)
-    : grid_(grid),
-      surroundings_(surroundings),
-      normals_(normals),
-      tolerance_(static_cast<float>(tolerance)),
-      match_distance_(static_cast<float>(parameters.match_distance)),
-      min_cosine_(static_cast<float>(std::cos(parameters.max_normal_angle)))
-  {
-  }
+      : grid_(grid),
+        surroundings_(surroundings),
+        normals_(normals),
+        tolerance_(static_cast<float>(tolerance)),
+        match_distance_(static_cast<float>(parameters.match_distance)),
+        min_cosine_(static_cast<float>(std::cos(parameters.max_normal_angle)))
+  {}
 
   Finding operator()(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const
   {
@@ -209,8 +228,8 @@ void count(const Finding& finding, PoseEvidence& evidence)
 }  // namespace
 
 PoseEvidence gatherEvidence(const OrientedPoints& facing, const Pose& T_camera_object, const DepthGrid& grid,
-                            const DepthGrid& surroundings, const std::vector<Eigen::Vector3f>& normals, double tolerance,
-                            const VerificationParameters& parameters)
+                            const DepthGrid& surroundings, const std::vector<Eigen::Vector3f>& normals,
+                            double tolerance, const VerificationParameters& parameters)
 {
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   const PointTest test(grid, surroundings, normals, tolerance, parameters);
@@ -224,8 +243,8 @@ PoseEvidence gatherEvidence(const OrientedPoints& facing, const Pose& T_camera_o
     ++evidence.facing;
     count(test(point, normal), evidence);
   }
-  evidence.rms = evidence.explained > 0 ? std::sqrt(evidence.rms / evidence.explained) :
-                                          std::numeric_limits<double>::quiet_NaN();
+  evidence.rms =
+      evidence.explained > 0 ? std::sqrt(evidence.rms / evidence.explained) : std::numeric_limits<double>::quiet_NaN();
   std::sort(evidence.pixels.begin(), evidence.pixels.end());
   evidence.pixels.erase(std::unique(evidence.pixels.begin(), evidence.pixels.end()), evidence.pixels.end());
   return evidence;

@@ -28,7 +28,8 @@ public:
     cell_ = std::max(cell_, (high - low).maxCoeff() / MAX_SIDE);
     width_ = static_cast<int>((high.x() - low.x()) / cell_) + 1;
     const int height = static_cast<int>((high.y() - low.y()) / cell_) + 1;
-    depth_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height), std::numeric_limits<float>::max());
+    depth_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height),
+                  std::numeric_limits<float>::max());
     for (const auto& p : points)
     {
       float& depth = depth_[index(p)];

@@ -20,17 +20,18 @@ SurfaceCurvature quadricCurvature(double a, double b, double c, double d, double
   const double F = d * e;
   const double G = 1 + e * e;
   const double norm = std::sqrt(1 + d * d + e * e);  // |r_x x r_y|
-  // The frame's z axis is the outward normal, so a convex surface bends away from it: the sign is turned to make it > 0.
+  // The frame's z axis is the outward normal, so a convex surface bends away from it: the sign is turned to make it >
+  // 0.
   const double L = -2 * a / norm;
   const double M = -b / norm;
   const double N = -2 * c / norm;
   const double det = E * G - F * F;
 
   SurfaceCurvature curvature;
-  curvature.gaussian = (L * N - M * M) / det;                         // Equation 3
-  curvature.mean = (L * G - 2 * M * F + N * E) / (2 * det);           // Equation 4
+  curvature.gaussian = (L * N - M * M) / det;                // Equation 3
+  curvature.mean = (L * G - 2 * M * F + N * E) / (2 * det);  // Equation 4
   const double root = std::sqrt(std::max(0.0, curvature.mean * curvature.mean - curvature.gaussian));
-  curvature.k1 = curvature.mean + root;                               // roots of Equation 2
+  curvature.k1 = curvature.mean + root;  // roots of Equation 2
   curvature.k2 = curvature.mean - root;
   return curvature;
 }
@@ -87,8 +88,9 @@ float normalVariation(const Eigen::Matrix3f& frame, const OrientedPoints& suppor
 }
 }  // namespace
 
-std::vector<float> estimateCurvature(const OrientedPoints& queries, const OrientedPoints& support, CurvatureMeasure measure,
-                                     double radius, double max_normal_angle, int min_neighbours, const Executor& executor)
+std::vector<float> estimateCurvature(const OrientedPoints& queries, const OrientedPoints& support,
+                                     CurvatureMeasure measure, double radius, double max_normal_angle,
+                                     int min_neighbours, const Executor& executor)
 {
   const KdTree tree(support.points);
   const auto min_cosine = static_cast<float>(std::cos(max_normal_angle));
@@ -99,17 +101,17 @@ std::vector<float> estimateCurvature(const OrientedPoints& queries, const Orient
     for (std::size_t i = block * BLOCK; i < std::min(queries.size(), (block + 1) * BLOCK); ++i)
     {
       tree.radiusSearch(queries.points[i], r, neighbours);
-      neighbours.erase(std::remove_if(neighbours.begin(), neighbours.end(),
-                                      [&](int n) {
-                                        return support.normals[static_cast<std::size_t>(n)].dot(queries.normals[i]) < min_cosine;
-                                      }),
-                       neighbours.end());
+      neighbours.erase(
+          std::remove_if(
+              neighbours.begin(), neighbours.end(),
+              [&](int n) { return support.normals[static_cast<std::size_t>(n)].dot(queries.normals[i]) < min_cosine; }),
+          neighbours.end());
       if (static_cast<int>(neighbours.size()) < min_neighbours)
         continue;
       const Eigen::Matrix3f frame = tangentFrame(queries.normals[i]);
-      curvature[i] = measure == CurvatureMeasure::MeanCurvature ?
-                         meanCurvature(queries.points[i], frame, support, neighbours, r) :
-                         normalVariation(frame, support, neighbours);
+      curvature[i] = measure == CurvatureMeasure::MeanCurvature
+                         ? meanCurvature(queries.points[i], frame, support, neighbours, r)
+                         : normalVariation(frame, support, neighbours);
     }
   });
   return curvature;

@@ -113,8 +113,8 @@ Eigen::Vector3f planeNormal(const Eigen::Vector3f& point, const Eigen::Vector3f&
 }
 }  // namespace
 
-std::vector<Eigen::Vector3f> estimateNormals(const OrientedPoints& queries, const OrientedPoints& support, double radius,
-                                             double max_normal_angle, const Executor& executor)
+std::vector<Eigen::Vector3f> estimateNormals(const OrientedPoints& queries, const OrientedPoints& support,
+                                             double radius, double max_normal_angle, const Executor& executor)
 {
   const KdTree tree(support.points);
   const auto min_cosine = static_cast<float>(std::cos(max_normal_angle));
@@ -130,13 +130,14 @@ std::vector<Eigen::Vector3f> estimateNormals(const OrientedPoints& queries, cons
   return normals;
 }
 
-OrientedPoints resampleSurface(const OrientedPoints& dense, const SurfaceResampling& resampling, const Executor& executor)
+OrientedPoints resampleSurface(const OrientedPoints& dense, const SurfaceResampling& resampling,
+                               const Executor& executor)
 {
   OrientedPoints points = voxelDownsample(dense, resampling.leaf);
   constexpr double SAME_FACE_ANGLE = 1.05;  // 60 degrees: a plane is not fitted around an edge
   points.normals = estimateNormals(points, dense, resampling.normal_radius, SAME_FACE_ANGLE, executor);
-  points.curvature = estimateCurvature(points, dense, resampling.measure, resampling.curvature_radius, OPPOSITE_WALL_ANGLE,
-                                       8, executor);
+  points.curvature = estimateCurvature(points, dense, resampling.measure, resampling.curvature_radius,
+                                       OPPOSITE_WALL_ANGLE, 8, executor);
   return points;
 }
 }  // namespace bin_picking
