@@ -151,9 +151,8 @@ private:
   SurfaceSamples samples_;
 };
 
-/// The best turn about the axis next to one of the steps. \param least contradiction of the step; becomes that of the
-/// turn
-Pose betweenSteps(const Pose& step, const Symmetry::Axis& axis, const Contradiction& contradiction, double& least)
+/// The best turn about the axis next to one of the steps. \param least contradiction of the step itself
+Pose betweenSteps(const Pose& step, const Symmetry::Axis& axis, const Contradiction& contradiction, double least)
 {
   Pose best = step;
   for (int k = -FINE_STEPS; k <= FINE_STEPS; ++k)
@@ -203,18 +202,18 @@ RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_ob
   std::vector<double> against(turns.size());
   std::transform(turns.begin(), turns.end(), against.begin(), std::cref(contradiction));
   const auto best = static_cast<std::size_t>(std::min_element(against.begin(), against.end()) - against.begin());
-  double least = against[best];
   if (best > 0)
   {
     choice.turned = true;
     choice.T_camera_object =
-        T_camera_object * betweenSteps(turns[best], model.near_symmetries[best - 1].axis, contradiction, least);
+        T_camera_object * betweenSteps(turns[best], model.near_symmetries[best - 1].axis, contradiction, against[best]);
     choice.T_camera_object.linear() =
         Eigen::Quaterniond(choice.T_camera_object.linear()).normalized().toRotationMatrix();
   }
+  // Steps against steps: a turn between them would seem surer than it is, for the others were not turned further.
   for (std::size_t k = 0; k < turns.size(); ++k)
     if (farthestMotion(model, T_camera_object * turns[k], choice.T_camera_object) > OTHER_POSE * model.diameter)
-      choice.margin = std::min(choice.margin, against[k] - least);
+      choice.margin = std::min(choice.margin, against[k] - against[best]);
   return choice;
 }
 
