@@ -212,7 +212,8 @@ RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_ob
   }
   // Steps against steps: a turn between them would seem surer than it is, for the others were not turned further.
   for (std::size_t k = 0; k < turns.size(); ++k)
-    if (farthestMotion(model, T_camera_object * turns[k], choice.T_camera_object) > OTHER_POSE * model.diameter)
+    if (k != best &&
+        farthestMotion(model, T_camera_object * turns[k], choice.T_camera_object) > OTHER_POSE * model.diameter)
       choice.margin = std::min(choice.margin, against[k] - against[best]);
   return choice;
 }
