@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/detector.hpp"
@@ -92,11 +96,21 @@ Source openSource(const Arguments& arguments, const EvaluationDataset& dataset, 
   return source;
 }
 
-DepthGrid loadScan(const EvaluationScene& scene, const InputParameters& parameters)
+struct LoadedScan
+{
+  std::optional<pcl::PointCloud<pcl::PointXYZ>> cloud;  ///< a depth picture has none
+  DepthGrid grid;
+};
+
+LoadedScan loadScan(const EvaluationScene& scene, const InputParameters& parameters)
 {
   try
   {
-    return loadSceneGrid(scene, parameters);
+    if (scene.depth_image)
+      return {std::nullopt, loadSceneGrid(scene, parameters)};
+    LoadedScan scan{loadSceneCloud(scene), {}};
+    scan.grid = makeGrid(*scan.cloud, parameters);
+    return scan;
   }
   catch (const CloudError& error)
   {
@@ -104,7 +118,7 @@ DepthGrid loadScan(const EvaluationScene& scene, const InputParameters& paramete
   }
 }
 
-JudgedScene runDetector(const Detector& detector, const EvaluationScene& scene, const DepthGrid& grid,
+JudgedScene runDetector(const Detector& detector, const EvaluationScene& scene, const LoadedScan& scan,
                         const PartShapes& shapes, const EvaluationParameters& parameters, int repetitions)
 {
   Detector::Request request;
@@ -114,8 +128,10 @@ JudgedScene runDetector(const Detector& detector, const EvaluationScene& scene, 
   std::vector<PoseEstimate> estimates;
   for (int k = 0; k < repetitions; ++k)
   {
-    const DetectionResult result = detector.detect(grid, request);
-    runs.push_back({result.total_seconds, result.timing});
+    // The conversion of the cloud is part of the time.
+    const DetectionResult result =
+        scan.cloud ? detector.detect(*scan.cloud, request) : detector.detect(scan.grid, request);
+    runs.push_back({result.total_seconds, result.timing, result.counts});
     estimates.clear();  // every run finds the same
     for (const Detection& detection : result.detections)
       estimates.push_back({detection.part, detection.T_camera_object, detection.score});
@@ -130,7 +146,7 @@ JudgedScene judgeResults(const ResultsOfScenes& results, std::size_t k, const Ev
 {
   JudgedScene judged = judgeScene(scene, results.estimates[k], shapes, parameters);
   if (results.seconds[k] >= 0)
-    judged.runs.push_back({results.seconds[k], {}});
+    judged.runs.push_back({results.seconds[k], {}, {}});
   return judged;
 }
 
@@ -162,13 +178,13 @@ EvaluationReport evaluateScenes(const Arguments& arguments, EvaluationDataset& d
     EvaluationScene& scene = dataset.scenes[k];
     progress.show("scene " + std::to_string(k + 1) + " of " + std::to_string(dataset.scenes.size()) + ": " +
                   scene.name);
-    const DepthGrid grid = loadScan(scene, detector_parameters.input);
-    estimateVisibility(scene, grid, shapes);
+    const LoadedScan scan = loadScan(scene, detector_parameters.input);
+    estimateVisibility(scene, scan.grid, shapes);
     report.scenes.push_back(source.detector
-                                ? runDetector(*source.detector, scene, grid, shapes, report.parameters, repetitions)
+                                ? runDetector(*source.detector, scene, scan, shapes, report.parameters, repetitions)
                                 : judgeResults(source.results, k, scene, shapes, report.parameters));
     if (arguments.has("--html"))
-      report.pictures.push_back(drawScene(grid, report.scenes.back(), shapes));
+      report.pictures.push_back(drawScene(scan.grid, report.scenes.back(), shapes));
   }
   progress.finish();
   if (source.results.left_out > 0)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <algorithm>
 #include <cmath>
 
 #include "evaluation_report.hpp"
@@ -95,6 +96,21 @@ Json instanceJson(const JudgedScene& scene, std::size_t index)
     json["valid_pixels"] = instance.valid_pixels;
   return json;
 }
+
+/// In the order of the pipeline, each with its times of all runs.
+Json stagesJson(const std::vector<RunTime>& runs)
+{
+  Json stages = Json::array();
+  for (const RunTime& run : runs)
+    for (const StageTime& time : run.stages)
+    {
+      const auto known = std::find_if(stages.begin(), stages.end(),
+                                      [&](const Json& stage) { return stage.at("stage") == time.stage; });
+      Json& stage = known == stages.end() ? stages.emplace_back(Json::object({{"stage", time.stage}})) : *known;
+      stage["ms"].push_back(time.seconds * 1000);
+    }
+  return stages;
+}
 }  // namespace
 
 nlohmann::json toJson(const EvaluationSummary& summary)
@@ -112,13 +128,17 @@ nlohmann::json toJson(const JudgedScene& scene)
 {
   Json json = {{"name", scene.scene.name},   {"scene_id", scene.scene.scene_id}, {"image_id", scene.scene.image_id},
                {"parts", scene.scene.parts}, {"instances", Json::array()},       {"estimates", Json::array()},
-               {"total_ms", Json::array()}};
+               {"total_ms", Json::array()},  {"counts", Json::object()}};
   for (std::size_t i = 0; i < scene.scene.instances.size(); ++i)
     json["instances"].push_back(instanceJson(scene, i));
   for (std::size_t e = 0; e < scene.estimates.size(); ++e)
     json["estimates"].push_back(estimateJson(scene, e));
   for (const RunTime& run : scene.runs)
     json["total_ms"].push_back(run.total * 1000);
+  json["stages"] = stagesJson(scene.runs);
+  if (!scene.runs.empty())
+    for (const StageCount& count : scene.runs.front().counts)  // the same in every run
+      json["counts"][count.stage] = count.count;
   return json;
 }
 }  // namespace bin_picking::tools

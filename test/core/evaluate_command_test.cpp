@@ -63,6 +63,21 @@ protected:
 
 std::unique_ptr<OwnFolder> EvaluateCommand::folder_;
 
+/// The time is that of the whole way from the cloud in memory: its conversion is a stage like the others.
+void expectTimesAddUp(const Json& scene, std::size_t runs)
+{
+  ASSERT_EQ(scene.at("total_ms").size(), runs);
+  ASSERT_EQ(scene.at("stages").at(0).at("stage"), "input");
+  for (std::size_t k = 0; k < runs; ++k)
+  {
+    double sum = 0;
+    for (const Json& stage : scene.at("stages"))
+      sum += stage.at("ms").at(k).get<double>();
+    EXPECT_GT(scene.at("stages").at(0).at("ms").at(k), 0);
+    EXPECT_NEAR(sum, scene.at("total_ms").at(k).get<double>(), 0.05 * sum);
+  }
+}
+
 TEST_F(EvaluateCommand, FindsTheTubesAndReportsInEveryForm)
 {
   const Outcome outcome = run(onBins("--repeat 2 --json " + file("report.json") + " --csv " + file("found.csv") +
@@ -83,6 +98,8 @@ TEST_F(EvaluateCommand, FindsTheTubesAndReportsInEveryForm)
   ASSERT_EQ(json.at("scenes").size(), 2u);
   EXPECT_EQ(json.at("scenes").at(1).at("name"), "tubes");
   EXPECT_EQ(json.at("scenes").at(1).at("estimates").at(0).at("verdict"), "right");
+  expectTimesAddUp(json.at("scenes").at(1), 2);
+  EXPECT_GT(json.at("scenes").at(1).at("counts").at("votes"), 0);
 
   const std::string page = readFile(file("report.html"));
   expectWords(page, {"data:image/jpeg;base64,/9j/", "mark-right", "<b>tubes"});

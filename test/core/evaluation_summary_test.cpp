@@ -157,8 +157,8 @@ TEST(Summary, TimesAreThoseOfAllRuns)
 {
   JudgedScene fast = judge(sceneOfBars({1}), {});
   JudgedScene slow = fast;
-  fast.runs = {{0.1, {{"voting", 0.06}, {"icp", 0.04}}}, {0.2, {{"voting", 0.1}, {"icp", 0.1}}}};
-  slow.runs = {{0.9, {{"voting", 0.8}}}};
+  fast.runs = {{0.1, {{"voting", 0.06}, {"icp", 0.04}}, {}}, {0.2, {{"voting", 0.1}, {"icp", 0.1}}, {}}};
+  slow.runs = {{0.9, {{"voting", 0.8}}, {}}};
   const EvaluationSummary summary = summarize({fast, slow}, {"bar"}, {});
   EXPECT_DOUBLE_EQ(summary.total.median, 0.2);
   EXPECT_EQ(summary.total.count, 3);

@@ -32,7 +32,7 @@ JudgedScene judged(const std::string& name, const std::vector<PoseEstimate>& est
   scene.instances[0].T_camera_object = barPose();
   scene.instances[0].visible_fraction = 0.93;
   JudgedScene result = judgeScene(scene, estimates, shapes(), {});
-  result.runs = {{0.123, {{"voting", 0.1}}}};
+  result.runs = {{0.123, {{"voting", 0.1}}, {}}};
   return result;
 }
 

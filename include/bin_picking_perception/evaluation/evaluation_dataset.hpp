@@ -34,7 +34,7 @@ struct DepthImageFormat
   std::string color_image;  ///< picture of the same pixels; empty: none
 };
 
-/// One scan with its truth. The scan itself stays in its file until loadSceneGrid.
+/// One scan with its truth. The scan itself stays in its file until it is loaded.
 struct EvaluationScene
 {
   std::string name;  ///< of its folder, or scene/image
@@ -76,6 +76,10 @@ struct DatasetSelection
 /// \throws FileError neither format; a missing or broken file; a pose that is no rigid motion; an unknown part
 /// \throws ParameterError the selection names a split or part that is not there
 EvaluationDataset openDataset(const std::string& path, const DatasetSelection& selection);
+
+/// The scan of a scene that is no depth picture, as a driver hands it over.
+/// \throws FileError as loadSceneGrid
+pcl::PointCloud<pcl::PointXYZ> loadSceneCloud(const EvaluationScene& scene);
 
 /// The scan. In depth pictures 0 is "not measured".
 /// \throws FileError missing, not readable, of another size than announced; CloudError as makeGrid

@@ -64,6 +64,7 @@ struct RunTime
 {
   double total = 0;  ///< seconds
   std::vector<StageTime> stages;
+  std::vector<StageCount> counts;
 };
 
 struct JudgedScene

@@ -2,6 +2,9 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "bin_picking_perception/evaluation/evaluation_dataset.hpp"
 
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -38,13 +41,12 @@ void dropUnusedParts(EvaluationDataset& dataset)
   dataset.parts.erase(std::remove_if(dataset.parts.begin(), dataset.parts.end(), unused), dataset.parts.end());
 }
 
-void requireSize(const EvaluationScene& scene, const DepthGrid& grid)
+void requireSize(const EvaluationScene& scene, int width, int height)
 {
-  if (scene.width > 0 && (grid.width != scene.width || grid.height != scene.height))
-    throw FileError("The scan " + scene.file + " has " + std::to_string(grid.width) + " x " +
-                    std::to_string(grid.height) + " pixels, but the camera of its scene has " +
-                    std::to_string(scene.width) + " x " + std::to_string(scene.height) +
-                    "; scan and camera file must belong together.");
+  if (scene.width > 0 && (width != scene.width || height != scene.height))
+    throw FileError("The scan " + scene.file + " has " + std::to_string(width) + " x " + std::to_string(height) +
+                    " pixels, but the camera of its scene has " + std::to_string(scene.width) + " x " +
+                    std::to_string(scene.height) + "; scan and camera file must belong together.");
 }
 }  // namespace
 
@@ -76,11 +78,19 @@ EvaluationDataset openDataset(const std::string& path, const DatasetSelection& s
   return dataset;
 }
 
+pcl::PointCloud<pcl::PointXYZ> loadSceneCloud(const EvaluationScene& scene)
+{
+  pcl::PointCloud<pcl::PointXYZ> cloud = loadCloud(scene.file);
+  requireSize(scene, static_cast<int>(cloud.width), static_cast<int>(cloud.height));
+  return cloud;
+}
+
 DepthGrid loadSceneGrid(const EvaluationScene& scene, const InputParameters& parameters)
 {
-  DepthGrid grid =
-      scene.depth_image ? loadDepthImage(scene.file, *scene.depth_image) : loadGrid(scene.file, parameters);
-  requireSize(scene, grid);
+  if (!scene.depth_image)
+    return makeGrid(loadSceneCloud(scene), parameters);
+  DepthGrid grid = loadDepthImage(scene.file, *scene.depth_image);
+  requireSize(scene, grid.width, grid.height);
   return grid;
 }
 
