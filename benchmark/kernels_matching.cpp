@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <algorithm>
+#include <cmath>
+
+#include "../src/core/matching/accumulator.hpp"
+#include "../src/core/matching/fast_quantizer.hpp"
+#include "bin_picking_perception/matching/clustering.hpp"
+#include "bin_picking_perception/matching/voting.hpp"
+#include "kernels.hpp"
+
+namespace bin_picking::kernels
+{
+namespace
+{
+constexpr std::size_t REFERENCES = 100;
+
+/// A pair as voting meets it: its feature, and what it is looked up by.
+struct ScenePair
+{
+  float distance;
+  float cosines[3];  ///< of the angles of Equation 5
+  float y;           ///< of the second point in the local frame of the first
+  float z;
+  std::uint32_t key;
+  std::uint16_t alpha;
+};
+
+void addPair(std::vector<ScenePair>& pairs, const OrientedPoints& scene, std::size_t r, std::size_t i,
+             const FeatureQuantizer& quantizer)
+{
+  const PairFeature feature = pairFeature(scene.points[r], scene.normals[r], scene.curvature[r], scene.points[i],
+                                          scene.normals[i], scene.curvature[i]);
+  const std::int64_t geometric = quantizer.geometricKey(feature);
+  if (geometric < 0 || std::isnan(feature.q1) || std::isnan(feature.q2))
+    return;
+  const Eigen::Vector3f local = alignToLocalFrame(scene.points[r], scene.normals[r]) * scene.points[i];
+  pairs.push_back({feature.distance,
+                   {std::cos(feature.angle_n1_d), std::cos(feature.angle_n2_d), std::cos(feature.angle_n1_n2)},
+                   local.y(),
+                   -local.z(),
+                   quantizer.key(geometric, quantizer.curvatureBin(feature.q1), quantizer.curvatureBin(feature.q2)),
+                   toTurnFraction(alphaInLocalFrame(local))});
+}
+
+/// Of reference points all over the scene, one vector each.
+std::vector<std::vector<ScenePair>> makePairs()
+{
+  const Workbench& bench = workbench();
+  const OrientedPoints& scene = bench.scene.samples;
+  const double min_distance = bench.model->parameters.min_pair_distance;
+  std::vector<std::vector<ScenePair>> all;
+  for (std::size_t r = 0; r < scene.size(); r += std::max<std::size_t>(1, scene.size() / REFERENCES))
+  {
+    all.emplace_back();
+    for (std::size_t i = 0; i < scene.size(); ++i)
+      if (const double distance = static_cast<double>((scene.points[i] - scene.points[r]).norm());
+          distance > min_distance && distance < bench.model->diameter)
+        addPair(all.back(), scene, r, i, bench.model->table.quantizer());
+  }
+  return all;
+}
+
+const std::vector<std::vector<ScenePair>>& pairsOfReferences()
+{
+  static const std::vector<std::vector<ScenePair>> pairs = makePairs();
+  return pairs;
+}
+
+std::size_t countPairs()
+{
+  std::size_t count = 0;
+  for (const auto& pairs : pairsOfReferences())
+    count += pairs.size();
+  return count;
+}
+
+Accumulator emptyAccumulator()
+{
+  const TrainedModel& model = *workbench().model;
+  return Accumulator(model.points.size(), static_cast<int>(std::lround(2 * M_PI / model.parameters.d_angle)));
+}
+
+std::uint64_t vote(const std::vector<ScenePair>& pairs, const FeatureTable& table, Accumulator& accumulator)
+{
+  std::uint64_t votes = 0;
+  for (const ScenePair& pair : pairs)
+  {
+    const FeatureTable::Slot slot = table.find(pair.key);
+    accumulator.vote(table.entries() + slot.begin, slot.count, pair.alpha, 1);
+    votes += slot.count;
+  }
+  return votes;
+}
+
+void pairKeys(benchmark::State& state)
+{
+  const FastQuantizer quantizer(workbench().model->table.quantizer());
+  for (auto _ : state)
+    for (const auto& pairs : pairsOfReferences())
+      for (const ScenePair& p : pairs)
+      {
+        benchmark::DoNotOptimize(quantizer.geometricKey(p.distance, p.cosines[0], p.cosines[1], p.cosines[2]));
+        benchmark::DoNotOptimize(turnFraction(p.z, p.y));
+      }
+  countPer(state, "pair", countPairs());
+}
+BENCHMARK(pairKeys)->Unit(benchmark::kMillisecond);
+
+void tableLookup(benchmark::State& state)
+{
+  const FeatureTable& table = workbench().model->table;
+  for (auto _ : state)
+    for (const auto& pairs : pairsOfReferences())
+      for (const ScenePair& pair : pairs)
+        benchmark::DoNotOptimize(table.find(pair.key));
+  countPer(state, "pair", countPairs());
+}
+BENCHMARK(tableLookup)->Unit(benchmark::kMillisecond);
+
+/// Look-up included: entries are only worth something once they are found.
+void lookupAndVotes(benchmark::State& state)
+{
+  const FeatureTable& table = workbench().model->table;
+  Accumulator accumulator = emptyAccumulator();
+  std::uint64_t votes = 0;
+  for (auto _ : state)
+    for (const auto& pairs : pairsOfReferences())
+    {
+      accumulator.clear();
+      votes += vote(pairs, table, accumulator);
+    }
+  countPer(state, "vote", votes / static_cast<std::uint64_t>(state.iterations()));
+}
+BENCHMARK(lookupAndVotes)->Unit(benchmark::kMillisecond);
+
+void accumulatorPeaks(benchmark::State& state)
+{
+  const VotingParameters& parameters = workbench().parameters.voting;
+  Accumulator accumulator = emptyAccumulator();
+  accumulator.clear();
+  vote(pairsOfReferences().front(), workbench().model->table, accumulator);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(accumulator.peaks(parameters.sum_adjacent_angles, parameters.min_peak_share));
+  countPer(state, "reference", 1);
+}
+BENCHMARK(accumulatorPeaks)->Unit(benchmark::kMicrosecond);
+
+VotingResult voteInScene()
+{
+  const Workbench& bench = workbench();
+  const SceneSamples& samples = bench.scene.samples;
+  std::vector<int> all(samples.size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = static_cast<int>(i);
+  return voteForPoses(*bench.model, samples, samples.curvature_complete, chooseReferences(all, bench.parameters.voting),
+                      bench.parameters.voting, Deadline(0), bench.executor);
+}
+
+void voting(benchmark::State& state)
+{
+  VotingStatistics statistics;
+  for (auto _ : state)
+    statistics = voteInScene().statistics;
+  countPer(state, "reference", statistics.references);
+  countPer(state, "pair", statistics.pairs);
+  countPer(state, "vote", statistics.votes);
+}
+BENCHMARK(voting)->Unit(benchmark::kMillisecond);
+
+void clustering(benchmark::State& state)
+{
+  const Workbench& bench = workbench();
+  const std::vector<Hypothesis> hypotheses = voteInScene().hypotheses;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(clusterPoses(hypotheses, *bench.model, bench.parameters.clustering));
+  countPer(state, "hypothesis", hypotheses.size());
+}
+BENCHMARK(clustering)->Unit(benchmark::kMillisecond);
+
+/// All pairs, also those that no view sees together: what a pair costs does not depend on that.
+void tableBuild(benchmark::State& state)
+{
+  const Workbench& bench = workbench();
+  const TrainedModel& model = *bench.model;
+  const std::vector<std::int8_t> classes(model.points.size(), 0);
+  std::size_t entries = 0;
+  for (auto _ : state)
+    entries = FeatureTable(model.points, classes, {}, 0, model.table.quantizer(), model.parameters.min_pair_distance,
+                           bench.executor)
+                  .numEntries();
+  countPer(state, "pair", entries);
+}
+BENCHMARK(tableBuild)->Unit(benchmark::kMillisecond);
+
+void training(benchmark::State& state)
+{
+  const Workbench& bench = workbench();
+  for (auto _ : state)
+    benchmark::DoNotOptimize(trainPart(bench.part, {}, bench.executor));
+  countPer(state, "pair", bench.model->table.numEntries());
+}
+BENCHMARK(training)->Unit(benchmark::kMillisecond);
+}  // namespace
+}  // namespace bin_picking::kernels
