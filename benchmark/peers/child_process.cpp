@@ -8,8 +8,10 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <iostream>
 
@@ -46,19 +48,57 @@ void writeLine(int pipe, const std::string& line)
   _exit(0);  // without the parent's exit handlers
 }
 
-/// Lines until the other end closes. \return why it was given up, or what the task has thrown; else empty
-std::string readLines(int pipe, double seconds_per_line, const LineSink& receive)
+double cpuSecondsOf(pid_t process)
 {
+  clockid_t clock{};
+  timespec used{};
+  if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &used) != 0)
+    return 0;  // it has ended: its pipe will say so
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
+/// How long ago the last line came.
+class Patience
+{
+public:
+  Patience(pid_t process, double seconds) : process_(process), seconds_(seconds) { restart(); }
+  void restart()
+  {
+    cpu_start_ = cpuSecondsOf(process_);
+    start_ = Clock::now();
+  }
+  bool exhausted() const
+  {
+    constexpr double CLOCK_FACTOR = 10;
+    return cpuSecondsOf(process_) - cpu_start_ > seconds_ ||
+           std::chrono::duration<double>(Clock::now() - start_).count() > CLOCK_FACTOR * seconds_;
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+  pid_t process_;
+  double seconds_;
+  double cpu_start_ = 0;
+  Clock::time_point start_;
+};
+
+/// Lines until the other end closes. \return why it was given up, or what the task has thrown; else empty
+std::string readLines(int pipe, pid_t child, double seconds_per_line, const LineSink& receive)
+{
+  constexpr int POLL_MS = 200;
+  Patience patience(child, seconds_per_line);
   std::string pending;
   std::array<char, 4096> buffer{};
   while (true)
   {
     pollfd waiting{pipe, POLLIN, 0};
-    const int ready = poll(&waiting, 1, static_cast<int>(1000 * seconds_per_line));
+    const int ready = poll(&waiting, 1, POLL_MS);
     if (ready < 0 && errno == EINTR)
       continue;
-    if (ready == 0)
+    if (patience.exhausted())
       return "no result within " + std::to_string(static_cast<int>(seconds_per_line)) + " s";
+    if (ready == 0)
+      continue;
     const ssize_t count = read(pipe, buffer.data(), buffer.size());
     if (count <= 0)
       return "";
@@ -70,6 +110,7 @@ std::string readLines(int pipe, double seconds_per_line, const LineSink& receive
       if (!line.empty() && line.front() == ERROR_MARK)
         return line.substr(1);
       receive(line);
+      patience.restart();
     }
   }
 }
@@ -91,7 +132,7 @@ std::string runInChild(const std::function<void(const LineSink& emit)>& task, do
     runTask(task, ends[1]);
   }
   close(ends[1]);
-  const std::string reason = readLines(ends[0], seconds_per_line, receive);
+  const std::string reason = readLines(ends[0], child, seconds_per_line, receive);
   close(ends[0]);
   if (!reason.empty())
     kill(child, SIGKILL);

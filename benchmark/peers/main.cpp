@@ -43,7 +43,7 @@ Syntax syntax()
            {"--scenes", "N", Values::One, "full bins per part of it (default 1)"},
            {"--views", "N", Values::One, "scans of each lone part (default 4)"},
            {"--programs", "NAME", Values::Many, "only these: ours, ours_on_points, opencv, pcl (default: all)"},
-           {"--limit", "S", Values::One, "seconds for a training or a scan (default 60)"},
+           {"--limit", "S", Values::One, "CPU seconds for a training or a scan (default 60)"},
            {"--no-growth", "", Values::None, "leave away the growth with the sizes of model and scene"},
            {"--quick", "", Values::None, "one view, coarse sampling, small sizes: about a minute; no figures to quote"},
            {"-o", "DIR", Values::One, "scans, report.md and report.json (default peers_report)"}},

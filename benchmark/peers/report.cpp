@@ -186,7 +186,7 @@ std::string introduction(const Study& study)
          "the\n"
       << "part's symmetry. `right`: ADD below 0.1 d. Sampling: " << number(100 * study.step, 1)
       << " % of d for the peers and `ours, points only`;\n`ours` derives it from the part. Limit: "
-      << number(study.limit, 0) << " s (wall) for a training or a scan; what was not answered counts as wrong.\n\n"
+      << number(study.limit, 0) << " s of CPU time for a training or a scan; what was not answered counts as wrong.\n\n"
       << "The peers as they are at their best: OpenCV gets clouds sampled in true cubes, lengths in millimetres,\n"
       << "thresholds for its clustering (0.05 d, 12 degrees) and its poses made rigid; PCL gets 31 angle bins, normals "
          "a\n"

@@ -19,7 +19,7 @@ struct Trial
   double step = 0;  ///< sampling, share of the diameter; 0: as the program derives it itself
   std::vector<EvaluationScene> scenes;
   int max_poses = 1;  ///< per scan
-  double limit = 60;  ///< wall seconds for the training and for each scan
+  double limit = 60;  ///< CPU seconds for the training and for each scan
 };
 
 struct TrainingOutcome
