@@ -69,7 +69,7 @@ std::string millimetres(const Eigen::Vector3d& size)
 std::string symmetryText(const Symmetry& symmetry)
 {
   if (symmetry.trivial())
-    return "none declared";
+    return "none";
   std::string text = symmetry.continuous ? "axis of revolution" : "";
   if (symmetry.discrete.size() > 1)
     text += std::string(text.empty() ? "" : ", ") + std::to_string(symmetry.discrete.size()) + " equal attitudes";
@@ -100,6 +100,8 @@ void printSummary(TrainedModel model, double seconds, const std::string& path)
   std::cout << model.name << "\n";
   printMesh(model);
   printLine("symmetry", symmetryText(model.symmetry));
+  for (const std::string& remark : model.remarks)
+    printLine("", remark);
   printLine("points", std::to_string(model.points.size()) + " at the leaf, " + std::to_string(model.surface.size()) +
                           " on the surface, " + std::to_string(model.views.size()) + " views");
   printLine("pairs", std::to_string(model.table.numEntries()) + " under " + std::to_string(model.table.numKeys()) +

@@ -38,6 +38,10 @@ TrainedModel someModel()
   model.center = {0.001, 0.002, 0.003};
   model.views = {{Eigen::Vector3f::UnitX(), 0.01f, 0.4f, {0, 2, 5}}, {Eigen::Vector3f::UnitY(), 0.02f, 0.5f, {}}};
   model.points.curvature[3] = std::nanf("");
+  model.remarks = {"It is round."};
+  model.field = DistanceField(model.surface, 0.003, 0.009);
+  const Symmetry::Axis axis{Eigen::Vector3d::UnitY(), Eigen::Vector3d(0.01, 0, 0.02)};
+  model.near_symmetries = {{rotationAbout(axis, 0.5), axis, 0.125}};
   return model;
 }
 
@@ -108,6 +112,15 @@ TEST(ModelFile, roundTripKeepsEveryField)
   EXPECT_EQ(loaded->classes.low_max, saved.classes.low_max);
   EXPECT_EQ(loaded->classes.high_min, saved.classes.high_min);
   expectEqual(loaded->table, saved.table);
+  EXPECT_EQ(loaded->remarks, saved.remarks);
+  EXPECT_EQ(loaded->field.band(), saved.field.band());
+  for (float x = -0.05f; x < 0.05f; x += 0.0013f)
+    EXPECT_EQ(loaded->field.at({x, 0.01f, 0.002f}), saved.field.at({x, 0.01f, 0.002f}));
+  ASSERT_EQ(loaded->near_symmetries.size(), 1u);
+  EXPECT_EQ(loaded->near_symmetries[0].T_object_object.matrix(), saved.near_symmetries[0].T_object_object.matrix());
+  EXPECT_EQ(loaded->near_symmetries[0].axis.direction, saved.near_symmetries[0].axis.direction);
+  EXPECT_EQ(loaded->near_symmetries[0].axis.origin, saved.near_symmetries[0].axis.origin);
+  EXPECT_EQ(loaded->near_symmetries[0].broken, saved.near_symmetries[0].broken);
 }
 
 TEST(ModelFile, savingAgainGivesTheSameBytesAndNothingElse)

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "bin_picking_perception/common/oriented_points.hpp"
-#include "bin_picking_perception/common/parallel.hpp"
 
 namespace bin_picking
 {
@@ -21,7 +20,7 @@ public:
   /// \param surface dense: nearest neighbours about half a cell apart
   /// \param cell edge of the grid's cells, metres; the distance is exact to about a quarter of it
   /// \param band greater distances are cut to it, metres; several cells
-  DistanceField(const OrientedPoints& surface, double cell, double band, const Executor& executor);
+  DistanceField(const OrientedPoints& surface, double cell, double band);
 
   bool empty() const { return values_.empty(); }
   float band() const { return band_; }
@@ -37,14 +36,19 @@ public:
     const std::size_t k = (static_cast<std::size_t>(i.z()) * rows_ + static_cast<std::size_t>(i.y())) * columns_ +
                           static_cast<std::size_t>(i.x());
     const std::size_t up = rows_ * columns_;
-    const float bottom = mix(mix(values_[k], values_[k + 1], f.x()),
-                             mix(values_[k + columns_], values_[k + columns_ + 1], f.x()), f.y());
-    const float top = mix(mix(values_[k + up], values_[k + up + 1], f.x()),
-                          mix(values_[k + up + columns_], values_[k + up + columns_ + 1], f.x()), f.y());
-    return mix(bottom, top, f.z());
+    const float bottom = mix(alongX(k, f.x()), alongX(k + columns_, f.x()), f.y());
+    const float top = mix(alongX(k + up, f.x()), alongX(k + up + columns_, f.x()), f.y());
+    return step_ * mix(bottom, top, f.z());
   }
 
 private:
+  friend struct ModelFileAccess;
+  /// What follows from the sizes: the step of the values and the last cell.
+  void fillDerived();
+  float alongX(std::size_t k, float share) const
+  {
+    return mix(static_cast<float>(values_[k]), static_cast<float>(values_[k + 1]), share);
+  }
   static float mix(float a, float b, float share) { return a + share * (b - a); }
 
   float band_ = 0;
@@ -53,6 +57,7 @@ private:
   Eigen::Array3f limit_ = Eigen::Array3f::Zero();
   std::size_t columns_ = 0;
   std::size_t rows_ = 0;
-  std::vector<float> values_;  ///< x fastest
+  float step_ = 0;                    ///< metres per unit of the values
+  std::vector<std::int16_t> values_;  ///< x fastest; 16 bits resolve a 32767th of the band
 };
 }  // namespace bin_picking

@@ -40,10 +40,10 @@ std::vector<Pose> closeUnderComposition(const std::vector<Pose>& generators);
 /// The representative of T's symmetry class that is nearest in rotation to `reference`.
 Pose nearestEquivalent(const Pose& T_camera_object, const Pose& reference, const Symmetry& symmetry);
 
-/// One way to take the part, as a person wrote it down.
 /// The turn about an axis by an angle (rad), as a motion of the part's frame.
 Pose rotationAbout(const Symmetry::Axis& axis, double angle);
 
+/// One way to take the part, as a person wrote it down.
 struct GraspDefinition
 {
   std::string id;
@@ -66,6 +66,7 @@ struct PartDefinition
   LengthUnit mesh_unit = LengthUnit::Metre;
   std::optional<Eigen::Vector3d> expected_size;  ///< bounding box that the mesh must have (1 % or 0.5 mm), metres
   Symmetry symmetry;
+  bool symmetry_stated = false;  ///< `symmetry` holds even if it is trivial; otherwise training looks for one
   std::vector<GraspDefinition> grasps;
   std::string training_yaml;       ///< the `training:` map as text, to be applied over the preset; may be empty
   std::vector<std::string> files;  ///< all that make up the part: its part.yaml first, then those that it names

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bin_picking_perception/common/oriented_points.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/model/curvature_classes.hpp"
 #include "bin_picking_perception/model/distance_field.hpp"
 #include "bin_picking_perception/model/feature_table.hpp"
@@ -45,13 +46,10 @@ struct TrainedModel
   std::vector<ViewTemplate> views;
   CurvatureClasses classes;
   FeatureTable table;
-  // Made from the surface whenever a model is trained or loaded (prepareComparison), not stored:
-  DistanceField field;
+  std::vector<std::string> remarks;  ///< what training found out about the part, sentences for people
+  DistanceField field;               ///< of the mesh, or of the surface points of a part without one
   std::vector<NearSymmetry> near_symmetries;
 };
-
-/// Fills `field` and `near_symmetries` from the mesh, or from the surface points of a part without one.
-void prepareComparison(TrainedModel& model, const Executor& executor);
 
 /// The offline phase for a mesh file or a point model. `definition.mesh_file` and `mesh_unit` are read; symmetry and
 /// the training overrides are taken from the definition. \param progress called with a stage name now and then; may be
@@ -65,7 +63,7 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
 std::uint64_t requestHash(const PartDefinition& definition, const TrainingParameters& parameters);
 
 /// Version of the model file's layout; other versions are not read.
-constexpr std::uint32_t MODEL_FILE_VERSION = 1;
+constexpr std::uint32_t MODEL_FILE_VERSION = 2;
 
 /// Binary file: magic, version, hashes, payload, checksum. Written to a temporary name first, then renamed.
 /// \throws FileError cannot be written

@@ -100,6 +100,7 @@ EvaluationPart findPart(const std::string& name, const std::map<int, ModelInfo>&
     part.mesh_file = (folder / (name + ".ply")).string();
     part.mesh_unit = LengthUnit::Millimetre;
     part.symmetry = info.symmetry;
+    part.symmetry_stated = true;
     if (!isThere(part.mesh_file))
       throw FileError("The mesh " + part.mesh_file +
                       " is missing, but the truth of the data set names its object; get "

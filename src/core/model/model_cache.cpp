@@ -49,8 +49,8 @@ std::uint64_t requestHash(const PartDefinition& definition, const TrainingParame
 {
   TrainingParameters effective = parameters;
   setParametersFromYaml(visitor(effective), definition.training_yaml, definition.directory + "/part.yaml");
-  std::string request =
-      definition.name + '\n' + toString(definition.mesh_unit) + '\n' + symmetryText(definition.symmetry) + '\n';
+  std::string request = definition.name + '\n' + toString(definition.mesh_unit) + '\n' +
+                        symmetryText(definition.symmetry) + (definition.symmetry_stated ? "stated" : "") + '\n';
   // Paths and values only: a better explanation of a parameter must not make every model stale.
   for (const ParameterEntry& entry : listParameters(visitor(effective)))
     request += entry.path + '=' + entry.value + '\n';

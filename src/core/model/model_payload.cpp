@@ -3,21 +3,13 @@
 #include "model_payload.hpp"
 
 #include <algorithm>
-#include <array>
-#include <stdexcept>
 
-#include "binary_stream.hpp"
+#include "payload_shape.hpp"
 
 namespace bin_picking
 {
 namespace
 {
-void require(bool condition, const char* what)
-{
-  if (!condition)
-    throw std::runtime_error(what);
-}
-
 void write(BinaryWriter& out, const OrientedPoints& points)
 {
   out.vectors(points.points);
@@ -35,57 +27,6 @@ OrientedPoints readPoints(BinaryReader& in)
   require(points.curvature.empty() || points.curvature.size() == points.size(),
           "the numbers of points and curvatures differ");
   return points;
-}
-
-void write(BinaryWriter& out, const Symmetry& symmetry)
-{
-  out.value(static_cast<std::uint64_t>(symmetry.discrete.size()));
-  for (const Pose& element : symmetry.discrete)
-    out.matrix(element.matrix());
-  out.value(static_cast<std::uint8_t>(symmetry.continuous ? 1 : 0));
-  if (symmetry.continuous)
-  {
-    out.matrix(symmetry.continuous->direction);
-    out.matrix(symmetry.continuous->origin);
-  }
-}
-
-Symmetry readSymmetry(BinaryReader& in)
-{
-  Symmetry symmetry;
-  symmetry.discrete.assign(in.count(sizeof(Eigen::Matrix4d)), Pose::Identity());
-  require(!symmetry.discrete.empty(), "the symmetry lacks the identity");
-  for (Pose& element : symmetry.discrete)
-    element.matrix() = in.matrix<Eigen::Matrix4d>();
-  if (in.value<std::uint8_t>() != 0)
-  {
-    const auto direction = in.matrix<Eigen::Vector3d>();
-    symmetry.continuous = Symmetry::Axis{direction, in.matrix<Eigen::Vector3d>()};
-  }
-  return symmetry;
-}
-
-void write(BinaryWriter& out, const TriangleMesh& mesh)
-{
-  out.vectors(mesh.vertices);
-  out.array(mesh.triangles);
-  out.value(static_cast<std::uint64_t>(mesh.repairs.size()));
-  for (const std::string& repair : mesh.repairs)
-    out.text(repair);
-}
-
-TriangleMesh readMesh(BinaryReader& in)
-{
-  TriangleMesh mesh;
-  mesh.vertices = in.vectors();
-  mesh.triangles = in.array<std::array<std::uint32_t, 3>>();
-  for (const auto& triangle : mesh.triangles)
-    require(*std::max_element(triangle.begin(), triangle.end()) < mesh.vertices.size(),
-            "a triangle has a corner that does not exist");
-  mesh.repairs.resize(in.count(sizeof(std::uint64_t)));
-  for (std::string& repair : mesh.repairs)
-    repair = in.text();
-  return mesh;
 }
 
 void write(BinaryWriter& out, const std::vector<ViewTemplate>& views)
@@ -116,7 +57,7 @@ std::vector<ViewTemplate> readViews(BinaryReader& in, std::size_t num_surface_po
   return views;
 }
 
-void write(BinaryWriter& out, const FeatureQuantizer& q)
+void writeQuantizer(BinaryWriter& out, const FeatureQuantizer& q)
 {
   for (const double step : {q.distance_step, q.angle_step, q.curvature_step, q.curvature_min})
     out.value(step);
@@ -151,7 +92,7 @@ struct ModelFileAccess
 {
   static void write(BinaryWriter& out, const FeatureTable& table)
   {
-    bin_picking::write(out, table.quantizer_);
+    writeQuantizer(out, table.quantizer_);
     out.array(table.slots_);
     out.array(table.entries_);
     out.value(static_cast<std::uint64_t>(table.num_keys_));
@@ -168,6 +109,34 @@ struct ModelFileAccess
     table.shift_ = in.value<std::uint32_t>();
     check(table, num_points);
     return table;
+  }
+
+  static void write(BinaryWriter& out, const DistanceField& field)
+  {
+    out.value(field.band_);
+    out.value(field.inverse_cell_);
+    out.matrix(field.low_);
+    out.value(static_cast<std::uint64_t>(field.columns_));
+    out.value(static_cast<std::uint64_t>(field.rows_));
+    out.array(field.values_);
+  }
+
+  static DistanceField readField(BinaryReader& in)
+  {
+    DistanceField field;
+    field.band_ = in.value<float>();
+    field.inverse_cell_ = in.value<float>();
+    field.low_ = in.matrix<Eigen::Vector3f>();
+    field.columns_ = static_cast<std::size_t>(in.value<std::uint64_t>());
+    field.rows_ = static_cast<std::size_t>(in.value<std::uint64_t>());
+    field.values_ = in.array<std::int16_t>();
+    field.fillDerived();
+    const std::size_t size = field.values_.size();
+    require(size == 0 || (field.columns_ > 1 && field.columns_ <= size && field.rows_ > 1 &&
+                          field.rows_ <= size / field.columns_ && size % (field.columns_ * field.rows_) == 0),
+            "the distance field has another size than it claims");
+    require(field.low_.allFinite() && field.band_ >= 0 && field.inverse_cell_ >= 0, "the distance field has no place");
+    return field;
   }
 
 private:
@@ -208,12 +177,15 @@ std::vector<char> writePayload(const TrainedModel& model)
   out.value(model.classes.low_max);
   out.value(model.classes.high_min);
   ModelFileAccess::write(out, model.table);
+  write(out, model.remarks);
+  ModelFileAccess::write(out, model.field);
+  write(out, model.near_symmetries);
   return out.take();
 }
 
 namespace
 {
-/// Lengths from which grids can be laid out.
+/// Lengths with which the online phase can work.
 bool isPlausible(const TrainedModel& model)
 {
   constexpr float MAX_COORDINATE = 10;  // metres
@@ -246,9 +218,11 @@ std::shared_ptr<const TrainedModel> readPayload(const char* begin, std::size_t s
   model->classes.low_max = in.value<double>();
   model->classes.high_min = in.value<double>();
   model->table = ModelFileAccess::read(in, model->points.size());
+  model->remarks = readTexts(in);
+  model->field = ModelFileAccess::readField(in);
+  model->near_symmetries = readNearSymmetries(in);
   require(in.left() == 0, "there are more data than a model has");
   require(isPlausible(*model), "lengths are absurd");
-  prepareComparison(*model, Executor(0));
   return model;
 }
 }  // namespace bin_picking

@@ -77,7 +77,8 @@ PartDefinition loadPart(const std::string& path)
   part.files = {file.string(), part.mesh_file};
   if (yaml.has("expected_size"))
     part.expected_size = readExpectedSize(yaml);
-  if (yaml.has("symmetry"))
+  part.symmetry_stated = yaml.has("symmetry");
+  if (part.symmetry_stated)
     part.symmetry = readSymmetry(yaml.map("symmetry"), part);
   if (yaml.has("training"))
     part.training_yaml = readTraining(yaml, file.string());

@@ -9,6 +9,7 @@
 #include "bin_picking_perception/model/trained_model.hpp"
 #include "bin_picking_perception/model/view_templates.hpp"
 #include "bin_picking_perception/scene/surface_resampling.hpp"
+#include "compare_with_itself.hpp"
 
 namespace bin_picking
 {
@@ -153,22 +154,6 @@ void checkPoints(const TrainedModel& model)
 }
 }  // namespace
 
-void prepareComparison(TrainedModel& model, const Executor& executor)
-{
-  if (model.surface.empty())
-    return;
-  const double leaf = model.parameters.leaf;
-  constexpr double MAX_CELLS = 200;  // along the box's diagonal: a fine leaf must not cost gigabytes
-  const double cell = std::max(leaf / 3, boundingBoxDiagonal(model.surface.points) / MAX_CELLS);
-  const double band = std::max(1.5 * leaf, 4 * cell);
-  const double kept = 0.35 * leaf;  // of the surface that a turn moves by less
-  const OrientedPoints dense =
-      model.mesh.empty() ? model.surface
-                         : sampleSurface(model.mesh, cell / 2, static_cast<std::uint32_t>(model.parameters.seed));
-  model.field = DistanceField(dense, cell, band, executor);
-  model.near_symmetries = findNearSymmetries(model.surface, model.field, model.symmetry, kept);
-}
-
 std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, const TrainingParameters& parameters,
                                               const Executor& executor,
                                               const std::function<void(const std::string&)>& progress)
@@ -179,7 +164,6 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
   };
   auto model = std::make_shared<TrainedModel>();
   model->name = definition.name;
-  model->symmetry = definition.symmetry;
   model->mesh_hash = hashFile(definition.mesh_file);
   model->parameter_hash = requestHash(definition, parameters);
   model->parameters = parameters;
@@ -205,8 +189,8 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
   model->parameters.d_cur = quantizer.curvature_step;
   model->table = FeatureTable(model->points, classes, visibility, static_cast<int>(words), quantizer,
                               p.min_pair_distance, executor);
-  report("near symmetries");
-  prepareComparison(*model, executor);
+  report("symmetry");
+  compareWithItself(*model, definition, dense);
   return model;
 }
 }  // namespace bin_picking
