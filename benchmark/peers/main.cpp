@@ -39,7 +39,7 @@ Syntax syntax()
   return {"benchmark_peers",
           "Runs OpenCV's and PCL's point-pair matching beside ours on the same scans and prints one report.",
           {"PART_DIR..."},
-          {{"--bins", "DATASET", Values::One, "also search whole bins of this data set (`bin_picking simulate`)"},
+          {{"--bins", "DATASET", Values::One, "also search for them in whole bins of this data set"},
            {"--scenes", "N", Values::One, "full bins per part of it (default 1)"},
            {"--views", "N", Values::One, "scans of each lone part (default 4)"},
            {"--programs", "NAME", Values::Many, "only these: ours, ours_on_points, opencv, pcl (default: all)"},
@@ -157,6 +157,15 @@ std::vector<EvaluationScene> fullBins(const EvaluationDataset& dataset, const st
   return scenes;
 }
 
+/// Why a program could not be trained for a part; what has failed once need not be waited for again.
+std::string trainingFailure(const Study& study, std::size_t program, const std::string& part)
+{
+  for (const PlannedTrial& planned : study.lone)
+    if (planned.trial.program == program && planned.trial.part.name == part && !planned.outcome.training)
+      return planned.outcome.failure;
+  return "";
+}
+
 void runBins(const EvaluationDataset& dataset, const Extent& extent, Study& study, Progress& progress)
 {
   for (const EvaluationPart& part : dataset.parts)
@@ -164,10 +173,15 @@ void runBins(const EvaluationDataset& dataset, const Extent& extent, Study& stud
     {
       if (programs()[p].key == "ours_on_points")
         continue;  // without the camera's grid it verifies nothing: it is for lone parts
-      study.bins.push_back(
-          runPlanned({p, part.definition, programs()[p].own_step ? 0 : extent.step,
-                      fullBins(dataset, part.definition.name, extent.bin_scenes), extent.bin_poses, extent.limit},
-                     "bins", progress));
+      const Trial trial{p,
+                        part.definition,
+                        programs()[p].own_step ? 0 : extent.step,
+                        fullBins(dataset, part.definition.name, extent.bin_scenes),
+                        extent.bin_poses,
+                        extent.limit};
+      const std::string failure = trainingFailure(study, p, part.definition.name);
+      study.bins.push_back(failure.empty() ? runPlanned(trial, "bins", progress)
+                                           : PlannedTrial{trial, {{}, {}, failure}});
     }
 }
 
@@ -182,12 +196,16 @@ void run(const Arguments& arguments, std::vector<std::string> command)
   study.step = extent.step;
   study.limit = extent.limit;
   EvaluationDataset lone;
+  std::vector<std::string> names;
   for (const std::string& folder : arguments.positionals())
+  {
     lone.parts.push_back({loadPart(folder), static_cast<int>(lone.parts.size()) + 1, 0});
+    names.push_back(lone.parts.back().definition.name);
+  }
   study.shapes = loadPartShapes(lone);
   EvaluationDataset bins;
   if (arguments.has("--bins"))
-    bins = openDataset(arguments.value("--bins"), {});
+    bins = openDataset(arguments.value("--bins"), {"", names, 0});
   study.bin_shapes = loadPartShapes(bins);
 
   Progress progress;

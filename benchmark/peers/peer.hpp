@@ -2,6 +2,9 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,12 +30,13 @@ struct PeerModel
 /// A scan as every program gets it.
 struct PeerScene
 {
-  DepthGrid grid;         ///< as measured
-  OrientedPoints points;  ///< of the region that is searched, with the normals that all programs share
-  OrientedPoints fine;    ///< the same, averaged in cubes of 1 % of the diameter: what the peers' ICP aligns to
+  pcl::PointCloud<pcl::PointXYZ> cloud;  ///< as a driver hands it over; empty for depth pictures
+  DepthGrid grid;                        ///< the same, or the depth picture
+  OrientedPoints points;                 ///< of the region that is searched, with the normals that all programs share
+  OrientedPoints fine;  ///< the same, averaged in cubes of 1 % of the diameter: what the peers' ICP aligns to
   std::optional<Bin> bin;
   int max_poses = 1;       ///< that are wanted
-  double max_seconds = 0;  ///< after which no further pose is begun
+  double max_seconds = 0;  ///< CPU time after which no further pose is begun
 };
 
 struct PeerPose

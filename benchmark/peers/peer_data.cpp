@@ -117,7 +117,9 @@ PeerScene loadPeerScene(const EvaluationScene& scene, const PeerModel& model)
 {
   const InputParameters input;
   PeerScene loaded;
-  loaded.grid = loadSceneGrid(scene, input);
+  if (!scene.depth_image)
+    loaded.cloud = loadSceneCloud(scene);
+  loaded.grid = scene.depth_image ? loadSceneGrid(scene, input) : makeGrid(loaded.cloud, input);
   loaded.bin = scene.bin;
   DepthGrid searched = reduceGrid(loaded.grid, scene.bin ? 2 : 1);
   cropToRegion(searched, input, scene.bin ? &*scene.bin : nullptr);

@@ -27,11 +27,8 @@ public:
 
   PeerResult find(const PeerScene& scene) override
   {
-    Detector::Request request;
-    request.bin = scene.bin;
     const double start = cpuSeconds();
-    const DetectionResult found =
-        on_points_ ? detector_->match(scene.points, false) : detector_->detect(scene.grid, request);
+    const DetectionResult found = on_points_ ? detector_->match(scene.points, false) : detect(scene);
     const double seconds = cpuSeconds() - start;
     PeerResult result;
     result.icp_seconds = seconds * refinementShare(found);
@@ -48,6 +45,13 @@ public:
   bool verifies() const override { return true; }
 
 private:
+  DetectionResult detect(const PeerScene& scene) const
+  {
+    Detector::Request request;
+    request.bin = scene.bin;
+    return scene.cloud.empty() ? detector_->detect(scene.grid, request) : detector_->detect(scene.cloud, request);
+  }
+
   /// Of the time, what comes after the poses are clustered.
   static double refinementShare(const DetectionResult& found)
   {

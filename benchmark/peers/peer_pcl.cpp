@@ -6,6 +6,8 @@
 #include <pcl/registration/icp.h>
 #include <pcl/registration/ppf_registration.h>
 
+#include <algorithm>
+
 #include "peer_data.hpp"
 
 namespace bin_picking::peers
@@ -22,6 +24,7 @@ constexpr float ANGLE_STEP = static_cast<float>(2 * M_PI / 31.0003);
 constexpr double ICP_STEP = 0.02;      // of the diameter
 constexpr double ICP_DISTANCE = 0.05;  // of the diameter
 constexpr std::size_t MIN_ICP_POINTS = 50;
+constexpr int MAX_SEARCHES = 10;  // of one scan: each costs as much as the first
 
 Cloud::Ptr toCloud(const OrientedPoints& points)
 {
@@ -62,7 +65,8 @@ public:
     OrientedPoints left = sampledInCubes(scene.points, edge_);
     result.scene_points = static_cast<int>(left.size());
     const double start = cpuSeconds();
-    while (static_cast<int>(result.poses.size()) < scene.max_poses && left.size() >= MIN_ICP_POINTS)
+    const int wanted = std::min(scene.max_poses, MAX_SEARCHES);
+    while (static_cast<int>(result.poses.size()) < wanted && left.size() >= MIN_ICP_POINTS)
     {
       const std::optional<Pose> pose = match(toCloud(left), result.match_seconds);
       if (!pose)
