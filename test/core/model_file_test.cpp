@@ -41,6 +41,8 @@ TrainedModel someModel()
   model.remarks = {"It is round."};
   model.field = DistanceField(model.surface, 0.003, 0.009);
   const Symmetry::Axis axis{Eigen::Vector3d::UnitY(), Eigen::Vector3d(0.01, 0, 0.02)};
+  model.near_crease.assign(model.surface.size(), 0);
+  model.near_crease[2] = 1;
   model.near_symmetries = {{rotationAbout(axis, 0.5), axis, 0.125}};
   return model;
 }
@@ -116,6 +118,7 @@ TEST(ModelFile, roundTripKeepsEveryField)
   EXPECT_EQ(loaded->field.band(), saved.field.band());
   for (float x = -0.05f; x < 0.05f; x += 0.0013f)
     EXPECT_EQ(loaded->field.at({x, 0.01f, 0.002f}), saved.field.at({x, 0.01f, 0.002f}));
+  EXPECT_EQ(loaded->near_crease, saved.near_crease);
   ASSERT_EQ(loaded->near_symmetries.size(), 1u);
   EXPECT_EQ(loaded->near_symmetries[0].T_object_object.matrix(), saved.near_symmetries[0].T_object_object.matrix());
   EXPECT_EQ(loaded->near_symmetries[0].axis.direction, saved.near_symmetries[0].axis.direction);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "bin_picking_perception/refinement/icp.hpp"
 #include "bin_picking_perception/scene/preprocessing.hpp"
 #include "tee_scene.hpp"
@@ -33,14 +35,28 @@ Scene sceneOf(const std::vector<Pose>& poses, double sigma)
 
 PoseEvidence evidenceOf(const Scene& scene, const Pose& T)
 {
-  return gatherEvidence(facingPoints(*test::teeModel(), T, 2000), T, scene.grid, scene.surroundings, scene.normals,
+  return gatherEvidence(*test::teeModel(), facingPoints(*test::teeModel(), T, 2000), T, scene.grid, scene.surroundings, scene.normals,
                         0.0015, {});
 }
 
 OutlineEvidence outlineOf(const Scene& scene, const Pose& T)
 {
   const double leaf = test::teeModel()->parameters.leaf;
-  return gatherOutlineEvidence(facingPoints(*test::teeModel(), T, 100000), T, scene.surroundings, leaf, leaf);
+  return gatherOutlineEvidence(*test::teeModel(), facingPoints(*test::teeModel(), T, 100000), T, scene.surroundings, leaf, leaf);
+}
+
+TrainedModel plateModel()
+{
+  TrainedModel plate;
+  plate.surface = test::plane(0.06, 4000);
+  return plate;
+}
+
+SurfaceIndices allPoints(const TrainedModel& model)
+{
+  SurfaceIndices indices(model.surface.size());
+  std::iota(indices.begin(), indices.end(), 0u);
+  return indices;
 }
 
 TEST(Evidence, truePoseIsExplained)
@@ -109,11 +125,11 @@ TEST(Outline, goesOnWhereTheSurfaceIsLarger)
       flat.y[i] = p.y();
       flat.z[i] = p.z();
     }
-  OrientedPoints plate = test::plane(0.06, 4000);
+  const TrainedModel plate = plateModel();
   Pose T = Pose::Identity();
   T.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
   T.translation().z() = 0.6;
-  const OutlineEvidence evidence = gatherOutlineEvidence(plate, T, flat, 0.004, 0.004);
+  const OutlineEvidence evidence = gatherOutlineEvidence(plate, allPoints(plate), T, flat, 0.004, 0.004);
   EXPECT_EQ(evidence.ends, 0);
   EXPECT_GT(evidence.continues, 30);
   EXPECT_LT(evidence.share(), 0.1);
@@ -124,7 +140,7 @@ TEST(Outline, withoutDataItDecidesNothing)
   const DepthGrid nothing = makeGrid(480, 384, test::smallCamera());
   Pose T = Pose::Identity();
   T.translation().z() = 0.6;
-  const OutlineEvidence evidence = gatherOutlineEvidence(test::plane(0.06, 4000), T, nothing, 0.004, 0.004);
+  const OutlineEvidence evidence = gatherOutlineEvidence(plateModel(), allPoints(plateModel()), T, nothing, 0.004, 0.004);
   EXPECT_EQ(evidence.ends + evidence.continues, 0);
   EXPECT_NEAR(evidence.share(), 2.0 / 3, 1e-9);
 }
@@ -154,7 +170,7 @@ TEST(IcpProjective, removesASmallErrorAndStaysRigid)
     Pose start = truth;
     start.linear() = truth.linear() * Eigen::AngleAxisd(0.06, test::unitVector(random)).toRotationMatrix();
     start.translation() += 0.002 * test::unitVector(random);
-    const IcpResult result = icpProjective(facingPoints(*test::teeModel(), start, 800), scene.grid, scene.normals,
+    const IcpResult result = icpProjective(test::teeModel()->surface, facingPoints(*test::teeModel(), start, 800), scene.grid, scene.normals,
                                            start, test::teeModel()->parameters.leaf, {});
     // sigma 0.1 mm on some 2000 pixels: the statistical error is below 0.01 mm; edges and quantisation leave more.
     EXPECT_LT((result.T_camera_object * test::teeModel()->center - truth * test::teeModel()->center).norm(), 0.0003);
@@ -191,7 +207,7 @@ TEST(IcpProjective, withoutDataThePoseStaysAndRmsIsNan)
   const std::vector<Eigen::Vector3f> normals(nothing.size(), Eigen::Vector3f::Constant(NAN));
   const auto start = test::posesApart(1, 1)[0];
   const IcpResult result =
-      icpProjective(facingPoints(*test::teeModel(), start, 500), nothing, normals, start, 0.004, {});
+      icpProjective(test::teeModel()->surface, facingPoints(*test::teeModel(), start, 500), nothing, normals, start, 0.004, {});
   EXPECT_TRUE(std::isnan(result.rms));
   EXPECT_FALSE(result.converged);
   EXPECT_TRUE(result.T_camera_object.matrix() == start.matrix());

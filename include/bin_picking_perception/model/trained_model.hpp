@@ -49,6 +49,7 @@ struct TrainedModel
   std::vector<std::string> remarks;  ///< what training found out about the part, sentences for people
   DistanceField field;               ///< of the mesh, or of the surface points of a part without one
   std::vector<NearSymmetry> near_symmetries;
+  std::vector<std::uint8_t> near_crease;  ///< per surface point: within normal_radius the surface bends sharply
 };
 
 /// The offline phase for a mesh file or a point model. `definition.mesh_file` and `mesh_unit` are read; symmetry and

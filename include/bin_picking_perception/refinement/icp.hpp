@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "bin_picking_perception/common/oriented_points.hpp"
@@ -42,10 +43,10 @@ struct IcpResult
 IcpResult icpPointToPoint(const OrientedPoints& model, const OrientedPoints& scene, const Pose& initial,
                           double max_distance, const IcpParameters& parameters);
 
-/// Point-to-plane ICP with projective association on the grid. `model_points` are those that face the camera at the
-/// initial pose. Directions in which the surface does not hold the part (a cylinder's axis) are left as they were.
+/// Point-to-plane ICP with projective association on the grid. Directions in which the surface does not hold the part (a
+/// cylinder's axis) are left as they were. \param facing the points of `model` that face the camera at the initial pose
 /// \param leaf scales the correspondence gate, metres
-IcpResult icpProjective(const OrientedPoints& model_points, const DepthGrid& grid,
+IcpResult icpProjective(const OrientedPoints& model, const std::vector<std::uint32_t>& facing, const DepthGrid& grid,
                         const std::vector<Eigen::Vector3f>& normals, const Pose& initial, double leaf,
                         const IcpParameters& parameters);
 }  // namespace bin_picking

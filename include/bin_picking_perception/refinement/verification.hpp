@@ -35,22 +35,24 @@ struct VerificationParameters
   void visit(ParameterVisitor& v);
 };
 
-/// Point counts of a pose held against the grid.
+/// A pose held against the grid: what became of the part's surface, in points, each weighted by the cosine under which
+/// the camera sees it. So a face counts by its share of the picture, not by its area: what is seen edge-on has few
+/// pixels.
 struct PoseEvidence
 {
-  int facing = 0;           ///< model points that would be seen if nothing were in front
-  int explained = 0;        ///< measured there, normal agrees
-  int misfit = 0;           ///< measured near there, but off the surface or with another normal
-  int occluded = 0;         ///< something nearer was measured: neither for nor against
-  int violated = 0;         ///< something farther was measured: the part cannot be there
-  int unmeasured = 0;       ///< no data (or outside of the picture)
-  int matched = 0;          ///< measured, not occluded, and within the distance of Equation 9
+  double facing = 0;        ///< would be seen if nothing were in front
+  double explained = 0;     ///< measured there, normal agrees
+  double misfit = 0;        ///< measured near there, but off the surface or with another normal
+  double occluded = 0;      ///< something nearer was measured: neither for nor against
+  double violated = 0;      ///< something farther was measured: the part cannot be there
+  double unmeasured = 0;    ///< no data (or outside of the picture)
+  double matched = 0;       ///< measured, not occluded, and within the distance of Equation 9
   double rms = 0;           ///< point-to-plane residual of the explained points, metres
   std::vector<int> pixels;  ///< of the explained points, ascending, unique
 
   /// Explained among all that speak for or against the pose, [0, 1].
   double inlierShare(double unmeasured_weight) const;
-  double visibleFraction() const { return facing > 0 ? static_cast<double>(explained) / facing : 0; }
+  double visibleFraction() const { return facing > 0 ? explained / facing : 0; }
   double violationShare() const;
   /// Equation 9 with the measured, not occluded pixels under the part as "object points in the scene".
   double matchingRate() const;
@@ -59,25 +61,29 @@ struct PoseEvidence
 /// The view of the part that is nearest to what the camera sees at this pose.
 const ViewTemplate& nearestView(const TrainedModel& model, const Pose& T_camera_object);
 
+/// Points of TrainedModel::surface, by index.
+using SurfaceIndices = std::vector<std::uint32_t>;
+
 /// Every step-th surface point of the nearest view so that about max_points remain.
-OrientedPoints facingPoints(const TrainedModel& model, const Pose& T_camera_object, std::size_t max_points);
+SurfaceIndices facingPoints(const TrainedModel& model, const Pose& T_camera_object, std::size_t max_points);
 
 /// Surface points that the camera would see at this pose if nothing but the part were there: a z-buffer of the points
 /// themselves. Exact also where the trained views are too far apart (into a bore, along a tube); slower than
 /// facingPoints.
-OrientedPoints visiblePoints(const TrainedModel& model, const Pose& T_camera_object);
+SurfaceIndices visiblePoints(const TrainedModel& model, const Pose& T_camera_object);
 
 /// Every step-th point so that at most max_points remain.
-OrientedPoints thinned(const OrientedPoints& points, std::size_t max_points);
+SurfaceIndices thinned(const SurfaceIndices& points, std::size_t max_points);
 
 /// \param facing points of the part that face the camera (visiblePoints, facingPoints)
 /// \param tolerance of the distance to the surface, metres
 /// \param grid what belongs to parts; \param surroundings the same grid with the bin and its floor, which are no
 /// evidence for
 ///   a part but may contradict it
-PoseEvidence gatherEvidence(const OrientedPoints& facing, const Pose& T_camera_object, const DepthGrid& grid,
-                            const DepthGrid& surroundings, const std::vector<Eigen::Vector3f>& normals,
-                            double tolerance, const VerificationParameters& parameters);
+PoseEvidence gatherEvidence(const TrainedModel& model, const SurfaceIndices& facing, const Pose& T_camera_object,
+                            const DepthGrid& grid, const DepthGrid& surroundings,
+                            const std::vector<Eigen::Vector3f>& normals, double tolerance,
+                            const VerificationParameters& parameters);
 
 /// What the scene does just outside of the part's outline, point by point along it.
 struct OutlineEvidence
@@ -94,8 +100,9 @@ struct OutlineEvidence
 /// \param visible all points that the camera sees (visiblePoints); their spacing must be well below `step`
 /// \param step how far outside of the outline the scene is looked at, metres
 /// \param tolerance depth difference that is still "going on", metres
-OutlineEvidence gatherOutlineEvidence(const OrientedPoints& visible, const Pose& T_camera_object, const DepthGrid& grid,
-                                      double step, double tolerance);
+OutlineEvidence gatherOutlineEvidence(const TrainedModel& model, const SurfaceIndices& visible,
+                                      const Pose& T_camera_object, const DepthGrid& grid, double step,
+                                      double tolerance);
 
 /// Image cells that a pose covers with explained pixels, ascending; two poses on one part share most of them.
 /// \param scale raw pixels per pixel of this grid, so that poses found on different reductions can be compared

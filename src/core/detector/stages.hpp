@@ -71,10 +71,20 @@ struct Assessed
   std::vector<int> cells;
 };
 
+/// What ranks a pose, [0, 1]. \param outline_share 1 where it is not known yet
+double poseScore(const PoseEvidence& evidence, double outline_share, const VerificationParameters& parameters);
+
+/// Distance to the part's surface that still explains a measured point, metres.
+double depthTolerance(const PreparedScene& scene, const TrainedModel& model, const VerificationParameters& parameters);
+
+/// One pose refined, settled among its rivals, and tested.
+Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
+                const DetectorParameters& parameters, int comparison_cell);
+
 /// Edge of the image cells by which poses are compared: about a leaf of the coarsest model, in raw pixels.
 int comparisonCell(const DepthGrid& raw, const std::vector<std::shared_ptr<const TrainedModel>>& models);
 
-/// The most promising poses, refined by ICP and tested. Order: as given.
+/// The most promising poses, refined by ICP and tested, without those that lie where better ones were accepted.
 std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, const PreparedScene& scene,
                                       const TrainedModel& model, const DetectorParameters& parameters,
                                       int comparison_cell, const Deadline& deadline, const Executor& executor,

@@ -180,6 +180,7 @@ std::vector<char> writePayload(const TrainedModel& model)
   write(out, model.remarks);
   ModelFileAccess::write(out, model.field);
   write(out, model.near_symmetries);
+  out.array(model.near_crease);
   return out.take();
 }
 
@@ -221,6 +222,8 @@ std::shared_ptr<const TrainedModel> readPayload(const char* begin, std::size_t s
   model->remarks = readTexts(in);
   model->field = ModelFileAccess::readField(in);
   model->near_symmetries = readNearSymmetries(in);
+  model->near_crease = in.array<std::uint8_t>();
+  require(model->near_crease.size() == model->surface.size(), "surface and creases differ in size");
   require(in.left() == 0, "there are more data than a model has");
   require(isPlausible(*model), "lengths are absurd");
   return model;

@@ -10,6 +10,7 @@
 #include "bin_picking_perception/model/view_templates.hpp"
 #include "bin_picking_perception/scene/surface_resampling.hpp"
 #include "compare_with_itself.hpp"
+#include "creases.hpp"
 
 namespace bin_picking
 {
@@ -189,6 +190,7 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
   model->parameters.d_cur = quantizer.curvature_step;
   model->table = FeatureTable(model->points, classes, visibility, static_cast<int>(words), quantizer,
                               p.min_pair_distance, executor);
+  model->near_crease = nearCrease(model->surface, p.normal_radius, executor);
   report("symmetry");
   compareWithItself(*model, definition, dense);
   return model;

@@ -32,69 +32,109 @@ struct Scene
   float min_cosine;
 };
 
-/// The measured pixel at and around the projection of `point` that lies nearest to it in space; -1 if there is none
-/// within `gate` with a fitting normal.
+/// Sums of one row of the normal equations after the other, in the precision of the data: a few hundred rows of like
+/// size.
+class RowSums
+{
+public:
+  void add(const Eigen::Matrix<float, 6, 1>& row, float residual, float weight)
+  {
+    for (int i = 0; i < 6; ++i)
+    {
+      const float weighted = weight * row[i];
+      for (int j = 0; j < 6; ++j)
+        products_[i][j] += weighted * row[j];
+      right_[i] += weighted * residual;
+    }
+    squared_error_ += weight * residual * residual;
+    weight_ += weight;
+    ++count_;
+  }
+
+  NormalEquations equations() const
+  {
+    NormalEquations result;
+    for (int i = 0; i < 6; ++i)
+    {
+      for (int j = 0; j < 6; ++j)
+        result.A(i, j) = static_cast<double>(products_[i][j]);
+      result.b[i] = static_cast<double>(right_[i]);
+    }
+    result.squared_error = static_cast<double>(squared_error_);
+    result.weight = static_cast<double>(weight_);
+    result.count = count_;
+    return result;
+  }
+
+private:
+  float products_[6][6] = {};
+  float right_[6] = {};
+  float squared_error_ = 0;
+  float weight_ = 0;
+  int count_ = 0;
+};
+
+/// The measured pixel on which `point` is projected; -1 if its surface is not within `gate`, or another one by its
+/// normal.
 int associate(const Scene& scene, const Eigen::Vector3f& point, const Eigen::Vector3f& normal, float gate)
 {
   const PinholeCamera& camera = scene.grid.camera;
-  const auto u = static_cast<int>(std::lround(camera.fx * static_cast<double>(point.x() / point.z()) + camera.cx));
-  const auto v = static_cast<int>(std::lround(camera.fy * static_cast<double>(point.y() / point.z()) + camera.cy));
-  int best = -1;
-  float best_distance = gate * gate;
-  for (int dv = -1; dv <= 1; ++dv)
-    for (int du = -1; du <= 1; ++du)
-    {
-      if (!scene.grid.inside(u + du, v + dv))
-        continue;
-      const int i = scene.grid.index(u + du, v + dv);
-      const Eigen::Vector3f& n = scene.normals[static_cast<std::size_t>(i)];
-      if (!scene.grid.valid(i) || std::isnan(n.x()) || n.dot(normal) < scene.min_cosine)
-        continue;
-      const float distance = (scene.grid.point(i) - point).squaredNorm();
-      if (distance < best_distance)
-      {
-        best_distance = distance;
-        best = i;
-      }
-    }
-  return best;
+  const float inverse_z = 1 / point.z();
+  const auto u =
+      static_cast<int>(static_cast<float>(camera.fx) * point.x() * inverse_z + static_cast<float>(camera.cx) + 0.5f);
+  const auto v =
+      static_cast<int>(static_cast<float>(camera.fy) * point.y() * inverse_z + static_cast<float>(camera.cy) + 0.5f);
+  if (!scene.grid.inside(u, v))
+    return -1;
+  const int i = scene.grid.index(u, v);
+  const Eigen::Vector3f& n = scene.normals[static_cast<std::size_t>(i)];
+  if (!scene.grid.valid(i) || !(n.dot(normal) >= scene.min_cosine))  // NaN: no normal
+    return -1;
+  // Along the surface the pixel may lie beside the point by its footprint.
+  constexpr float FLATTEST = 0.2f;
+  const Eigen::Vector3f d = scene.grid.point(i) - point;
+  const float cosine = std::max(FLATTEST, -normal.dot(point) / point.norm());
+  const float reach = gate + static_cast<float>(scene.grid.pitch(static_cast<double>(point.z()))) / cosine;
+  return std::abs(n.dot(d)) < gate && d.squaredNorm() < reach * reach ? i : -1;
 }
 
-NormalEquations accumulate(const OrientedPoints& model, const Scene& scene, const Pose& T_camera_object,
-                           const Eigen::Vector3d& pivot, double radius, double gate)
+NormalEquations accumulate(const OrientedPoints& model, const std::vector<std::uint32_t>& facing, std::size_t step,
+                           const Scene& scene, const Pose& T_camera_object, const Eigen::Vector3d& pivot, double radius,
+                           double gate)
 {
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
-  NormalEquations equations;
-  for (std::size_t k = 0; k < model.size(); ++k)
+  const Eigen::Vector3f origin = pivot.cast<float>();
+  const auto inverse_radius = static_cast<float>(1 / radius);
+  const auto inverse_gate = static_cast<float>(1 / gate);
+  RowSums sums;
+  for (std::size_t k = 0; k < facing.size(); k += step)
   {
-    const Eigen::Vector3f point = T * model.points[k];
-    const Eigen::Vector3f normal = T.linear() * model.normals[k];
+    const Eigen::Vector3f point = T * model.points[facing[k]];
+    const Eigen::Vector3f normal = T.linear() * model.normals[facing[k]];
     if (point.z() <= 0 || normal.dot(point) >= 0)
       continue;
     const int i = associate(scene, point, normal, static_cast<float>(gate));
     if (i < 0)
       continue;
-    const Eigen::Vector3d n = scene.normals[static_cast<std::size_t>(i)].cast<double>();
-    const double residual = n.dot((scene.grid.point(i) - point).cast<double>());
+    const Eigen::Vector3f& n = scene.normals[static_cast<std::size_t>(i)];
+    const float residual = n.dot(scene.grid.point(i) - point);
     // Tukey's biweight at the gate: a neighbour's surface just inside it pulls little.
-    const double share = residual / gate;
-    const double weight = std::pow(1 - std::min(1.0, share * share), 2);
-    Vector6d row;
-    row << (point.cast<double>() - pivot).cross(n) / radius, n;
-    equations.A.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-    equations.b += weight * residual * row;
-    equations.squared_error += weight * residual * residual;
-    equations.weight += weight;
-    ++equations.count;
+    const float share = residual * inverse_gate;
+    const float root = 1 - share * share;
+    Eigen::Matrix<float, 6, 1> row;
+    const Eigen::Vector3f lever = (point - origin) * inverse_radius;
+    row << lever.y() * n.z() - lever.z() * n.y(), lever.z() * n.x() - lever.x() * n.z(),
+        lever.x() * n.y() - lever.y() * n.x(), n;
+    sums.add(row, residual, root * root);
   }
-  return equations;
+  return sums.equations();
 }
 
 /// Solves in the directions that the surface holds; where its eigenvalue is tiny (along a cylinder) nothing moves.
 Vector6d solveObservable(const NormalEquations& equations)
 {
   constexpr double MIN_EIGENVALUE_SHARE = 2e-3;
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(Matrix6d(equations.A.selfadjointView<Eigen::Lower>()));
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(equations.A);
   const Vector6d& values = solver.eigenvalues();
   Vector6d x = Vector6d::Zero();
   for (int i = 0; i < 6; ++i)
@@ -118,35 +158,39 @@ Pose applyStep(const Pose& T_camera_object, const Vector6d& x, const Eigen::Vect
 }
 }  // namespace
 
-IcpResult icpProjective(const OrientedPoints& model_points, const DepthGrid& grid,
+IcpResult icpProjective(const OrientedPoints& model, const std::vector<std::uint32_t>& facing, const DepthGrid& grid,
                         const std::vector<Eigen::Vector3f>& normals, const Pose& initial, double leaf,
                         const IcpParameters& parameters)
 {
   constexpr int MIN_PAIRS = 12;
+  constexpr std::size_t COARSE_POINTS = 250;
   IcpResult result;
   result.T_camera_object = initial;
   result.rms = std::numeric_limits<double>::quiet_NaN();
-  if (model_points.empty())
+  if (facing.empty())
     return result;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  for (const auto& point : model_points.points)
-    center += point.cast<double>() / static_cast<double>(model_points.size());
-  const double radius = boundingBoxDiagonal(model_points.points) / 2;
+  for (const std::uint32_t i : facing)
+    center += model.points[i].cast<double>() / static_cast<double>(facing.size());
+  const double radius = boundingBoxDiagonal(model.points) / 2;
   const Scene scene{grid, normals, static_cast<float>(std::cos(parameters.max_normal_angle))};
 
+  // Half of the iterations close the gate, with few points; the others polish with all.
   const double shrink = std::pow(parameters.min_distance / parameters.max_distance, 2.0 / parameters.max_iterations);
+  const std::size_t coarse_step = std::max<std::size_t>(1, facing.size() / COARSE_POINTS);
   double gate = parameters.max_distance * leaf;
   for (; result.iterations < parameters.max_iterations && !result.converged; ++result.iterations)
   {
+    const bool gate_is_closed = gate <= parameters.min_distance * leaf * 1.001;
     const Eigen::Vector3d pivot = result.T_camera_object * center;
-    const NormalEquations equations = accumulate(model_points, scene, result.T_camera_object, pivot, radius, gate);
+    const NormalEquations equations =
+        accumulate(model, facing, gate_is_closed ? 1 : coarse_step, scene, result.T_camera_object, pivot, radius, gate);
     result.correspondences = equations.count;
     if (equations.count < MIN_PAIRS)
       break;
     result.rms = std::sqrt(equations.squared_error / equations.weight);
     const Vector6d x = solveObservable(equations);
     result.T_camera_object = applyStep(result.T_camera_object, x, pivot, radius);
-    const bool gate_is_closed = gate <= parameters.min_distance * leaf * 1.001;
     result.converged = gate_is_closed && x.head<3>().norm() + x.tail<3>().norm() < parameters.convergence;
     gate = std::max(gate * shrink, parameters.min_distance * leaf);
   }

@@ -57,16 +57,19 @@ Raster rasterize(const std::vector<Eigen::Vector3f>& points, const PinholeCamera
 }
 }  // namespace
 
-OutlineEvidence gatherOutlineEvidence(const OrientedPoints& visible, const Pose& T_camera_object, const DepthGrid& grid,
-                                      double step, double tolerance)
+OutlineEvidence gatherOutlineEvidence(const TrainedModel& model, const SurfaceIndices& visible,
+                                      const Pose& T_camera_object, const DepthGrid& grid, double step, double tolerance)
 {
   OutlineEvidence evidence;
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   std::vector<Eigen::Vector3f> points;
   points.reserve(visible.size());
-  for (const auto& p : visible.points)
-    if ((T * p).z() > 0)
-      points.push_back(T * p);
+  for (const std::uint32_t i : visible)
+  {
+    const Eigen::Vector3f p = T * model.surface.points[i];
+    if (p.z() > 0)
+      points.push_back(p);
+  }
   if (points.empty())
     return evidence;
   const double depth = static_cast<double>(points.front().z());

@@ -72,14 +72,14 @@ double PoseEvidence::inlierShare(double unmeasured_weight) const
 
 double PoseEvidence::violationShare() const
 {
-  const int measured = explained + misfit + violated;
-  return measured > 0 ? static_cast<double>(violated) / measured : 1;
+  const double measured = explained + misfit + violated;
+  return measured > 0 ? violated / measured : 1;
 }
 
 double PoseEvidence::matchingRate() const
 {
-  const int object_points = explained + misfit + violated;
-  return object_points > 0 ? static_cast<double>(matched) / object_points : 0;
+  const double object_points = explained + misfit + violated;
+  return object_points > 0 ? matched / object_points : 0;
 }
 
 const ViewTemplate& nearestView(const TrainedModel& model, const Pose& T_camera_object)
@@ -90,17 +90,9 @@ const ViewTemplate& nearestView(const TrainedModel& model, const Pose& T_camera_
   });
 }
 
-OrientedPoints facingPoints(const TrainedModel& model, const Pose& T_camera_object, std::size_t max_points)
+SurfaceIndices facingPoints(const TrainedModel& model, const Pose& T_camera_object, std::size_t max_points)
 {
-  const auto& visible = nearestView(model, T_camera_object).visible;
-  const std::size_t step = std::max<std::size_t>(1, (visible.size() + max_points - 1) / max_points);
-  OrientedPoints facing;
-  for (std::size_t i = 0; i < visible.size(); i += step)
-  {
-    facing.points.push_back(model.surface.points[visible[i]]);
-    facing.normals.push_back(model.surface.normals[visible[i]]);
-  }
-  return facing;
+  return thinned(nearestView(model, T_camera_object).visible, max_points);
 }
 
 namespace
@@ -135,7 +127,8 @@ public:
         min_cosine_(static_cast<float>(std::cos(parameters.max_normal_angle)))
   {}
 
-  Finding operator()(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const
+  /// \param crease the measured normal may be anything between those of two faces
+  Finding operator()(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, bool crease) const
   {
     const auto& camera = grid_.camera;
     const auto u = static_cast<int>(std::lround(camera.fx * static_cast<double>(point.x() / point.z()) + camera.cx));
@@ -148,7 +141,7 @@ public:
     constexpr int AROUND[5][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     for (const auto& offset : AROUND)
       if (grid_.inside(u + offset[0], v + offset[1]) &&
-          explains(grid_.index(u + offset[0], v + offset[1]), point, normal, finding))
+          explains(grid_.index(u + offset[0], v + offset[1]), point, normal, crease, finding))
         return finding;
     if (surroundings_.valid(center))
       finding.verdict = contradiction(center, point, normal);
@@ -156,7 +149,8 @@ public:
   }
 
 private:
-  bool explains(int pixel, const Eigen::Vector3f& point, const Eigen::Vector3f& normal, Finding& finding) const
+  bool explains(int pixel, const Eigen::Vector3f& point, const Eigen::Vector3f& normal, bool crease,
+                Finding& finding) const
   {
     if (!grid_.valid(pixel))
       return false;
@@ -171,7 +165,7 @@ private:
     if (!is_near || std::abs(residual) > tolerance_)
       return false;
     const Eigen::Vector3f& measured = normals_[static_cast<std::size_t>(pixel)];
-    if (!std::isnan(measured.x()) && measured.dot(normal) < min_cosine_)
+    if (!crease && !std::isnan(measured.x()) && measured.dot(normal) < min_cosine_)
       return false;
     finding.verdict = Verdict::Explained;
     finding.pixel = pixel;
@@ -200,48 +194,51 @@ private:
   float min_cosine_;
 };
 
-void count(const Finding& finding, PoseEvidence& evidence)
+void count(const Finding& finding, double weight, PoseEvidence& evidence)
 {
   switch (finding.verdict)
   {
     case Verdict::Explained:
-      ++evidence.explained;
+      evidence.explained += weight;
       evidence.pixels.push_back(finding.pixel);
-      evidence.rms += static_cast<double>(finding.residual * finding.residual);
+      evidence.rms += weight * static_cast<double>(finding.residual * finding.residual);
       break;
     case Verdict::Misfit:
-      ++evidence.misfit;
+      evidence.misfit += weight;
       break;
     case Verdict::Occluded:
-      ++evidence.occluded;
+      evidence.occluded += weight;
       break;
     case Verdict::Violated:
-      ++evidence.violated;
+      evidence.violated += weight;
       break;
     case Verdict::Unmeasured:
-      ++evidence.unmeasured;
+      evidence.unmeasured += weight;
       break;
   }
   const bool object_point = finding.verdict != Verdict::Occluded && finding.verdict != Verdict::Unmeasured;
-  evidence.matched += object_point && finding.matched;
+  evidence.matched += object_point && finding.matched ? weight : 0;
 }
 }  // namespace
 
-PoseEvidence gatherEvidence(const OrientedPoints& facing, const Pose& T_camera_object, const DepthGrid& grid,
-                            const DepthGrid& surroundings, const std::vector<Eigen::Vector3f>& normals,
-                            double tolerance, const VerificationParameters& parameters)
+PoseEvidence gatherEvidence(const TrainedModel& model, const SurfaceIndices& facing, const Pose& T_camera_object,
+                            const DepthGrid& grid, const DepthGrid& surroundings,
+                            const std::vector<Eigen::Vector3f>& normals, double tolerance,
+                            const VerificationParameters& parameters)
 {
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   const PointTest test(grid, surroundings, normals, tolerance, parameters);
   PoseEvidence evidence;
-  for (std::size_t i = 0; i < facing.size(); ++i)
+  for (const std::uint32_t i : facing)
   {
-    const Eigen::Vector3f point = T * facing.points[i];
-    const Eigen::Vector3f normal = T.linear() * facing.normals[i];
-    if (point.z() <= 0 || normal.dot(point) >= 0)
+    const Eigen::Vector3f point = T * model.surface.points[i];
+    const Eigen::Vector3f normal = T.linear() * model.surface.normals[i];
+    const float cosine = -normal.dot(point) / point.norm();
+    if (point.z() <= 0 || cosine <= 0)
       continue;  // just beyond the silhouette at this pose
-    ++evidence.facing;
-    count(test(point, normal), evidence);
+    const auto weight = static_cast<double>(cosine);
+    evidence.facing += weight;
+    count(test(point, normal, model.near_crease[i] != 0), weight, evidence);
   }
   evidence.rms =
       evidence.explained > 0 ? std::sqrt(evidence.rms / evidence.explained) : std::numeric_limits<double>::quiet_NaN();

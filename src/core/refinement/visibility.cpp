@@ -53,43 +53,44 @@ private:
 };
 }  // namespace
 
-OrientedPoints visiblePoints(const TrainedModel& model, const Pose& T_camera_object)
+SurfaceIndices visiblePoints(const TrainedModel& model, const Pose& T_camera_object)
 {
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   std::vector<Eigen::Vector3f> points;
-  std::vector<int> indices;
+  SurfaceIndices indices;
   for (std::size_t i = 0; i < model.surface.size(); ++i)
   {
     const Eigen::Vector3f p = T * model.surface.points[i];
     if (p.z() <= 0 || (T.linear() * model.surface.normals[i]).dot(p) >= 0)
       continue;
     points.push_back(p);
-    indices.push_back(static_cast<int>(i));
+    indices.push_back(static_cast<std::uint32_t>(i));
   }
   if (points.empty())
     return {};
   // Cells wide enough that a closed surface leaves none empty.
   const auto size = static_cast<float>(1.6 * model.parameters.surface_spacing);
   const DepthCells nearest(points, size / static_cast<float>((T_camera_object * model.center).z()));
-  std::vector<int> visible;
+  SurfaceIndices visible;
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    const Eigen::Vector3f normal = T.linear() * model.surface.normals[static_cast<std::size_t>(indices[i])];
+    const Eigen::Vector3f normal = T.linear() * model.surface.normals[indices[i]];
     const float cosine = std::max(0.25f, -normal.dot(points[i]) / points[i].norm());
     // Within a cell a tilted surface spans this much depth by itself.
     const float slope = size * std::sqrt(1 - cosine * cosine) / cosine;
     if (points[i].z() <= nearest.at(points[i]) + 0.5f * size + 1.5f * slope)
       visible.push_back(indices[i]);
   }
-  return select(model.surface, visible);
+  return visible;
 }
 
-OrientedPoints thinned(const OrientedPoints& points, std::size_t max_points)
+SurfaceIndices thinned(const SurfaceIndices& points, std::size_t max_points)
 {
   const std::size_t step = std::max<std::size_t>(1, (points.size() + max_points - 1) / max_points);
-  std::vector<int> indices;
+  SurfaceIndices chosen;
+  chosen.reserve(points.size() / step + 1);
   for (std::size_t i = 0; i < points.size(); i += step)
-    indices.push_back(static_cast<int>(i));
-  return select(points, indices);
+    chosen.push_back(points[i]);
+  return chosen;
 }
 }  // namespace bin_picking

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <algorithm>
+#include <iterator>
+
+#include "../common/parameter_text.hpp"
+#include "stages.hpp"
+
+namespace bin_picking
+{
+std::string failureText(const Criterion& criterion)
+{
+  return criterion.name + " is " + roundedText(criterion.value, 3) + ", but must be at " +
+         (criterion.upper_limit ? "most " : "least ") + roundedText(criterion.required, 3);
+}
+
+void summarize(DetectionResult& result)
+{
+  const std::string late = result.partial ? "; the deadline passed, so this is what was ready" : "";
+  result.code = result.detections.empty() ? DetectionCode::NoMatch : DetectionCode::Ok;
+  if (result.detections.empty())
+    result.message = "no part was recognised; the best of " + std::to_string(result.rejected.size()) +
+                     " rejected poses: " + (result.rejected.empty() ? "none" : result.rejected.front().rejection) +
+                     late;
+  else
+    result.message = std::to_string(result.detections.size()) + " part(s) found, the best with a score of " +
+                     roundedText(result.detections.front().score, 2) + late;
+}
+
+void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& parameters, DetectionResult& result)
+{
+  std::stable_sort(assessed.begin(), assessed.end(),
+                   [](const Assessed& a, const Assessed& b) { return a.detection.score > b.detection.score; });
+  std::vector<int> explained;  // by accepted detections, ascending
+  for (auto& candidate : assessed)
+  {
+    Detection& detection = candidate.detection;
+    std::vector<int> shared;
+    std::set_intersection(candidate.cells.begin(), candidate.cells.end(), explained.begin(), explained.end(),
+                          std::back_inserter(shared));
+    const double overlap =
+        static_cast<double>(shared.size()) / std::max<double>(1, static_cast<double>(candidate.cells.size()));
+    if (detection.rejection.empty() && overlap > parameters.verification.overlap)
+      detection.rejection = "a better detection explains " + roundedText(100 * overlap, 0) + " % of what it explains";
+    if (detection.rejection.empty() && static_cast<int>(result.detections.size()) >= parameters.max_detections)
+      detection.rejection = "max_detections better ones were found";
+    if (!detection.rejection.empty())
+    {
+      if (static_cast<int>(result.rejected.size()) < parameters.max_rejected)
+        result.rejected.push_back(std::move(detection));
+      continue;
+    }
+    std::vector<int> merged;
+    std::set_union(explained.begin(), explained.end(), candidate.cells.begin(), candidate.cells.end(),
+                   std::back_inserter(merged));
+    explained = std::move(merged);
+    result.detections.push_back(std::move(detection));
+  }
+}
+}  // namespace bin_picking
