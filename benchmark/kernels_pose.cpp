@@ -26,7 +26,7 @@ void forEachPose(benchmark::State& state, const Work& work)
 Pose refined(const Pose& T_camera_object)
 {
   const Workbench& bench = workbench();
-  return icpProjective(facingPoints(*bench.model, T_camera_object, ICP_POINTS), bench.scene.grid, bench.scene.normals,
+  return icpProjective(bench.model->surface, facingPoints(*bench.model, T_camera_object, ICP_POINTS), bench.scene.grid, bench.scene.normals,
                        T_camera_object, bench.model->parameters.leaf, bench.parameters.icp)
       .T_camera_object;
 }
@@ -46,12 +46,12 @@ BENCHMARK(pointsInView)->Unit(benchmark::kMillisecond);
 void evidence(benchmark::State& state)
 {
   const Workbench& bench = workbench();
-  std::vector<OrientedPoints> visible;
+  std::vector<SurfaceIndices> visible;
   for (const Pose& pose : bench.poses)
     visible.push_back(thinned(visiblePoints(*bench.model, pose), TEST_POINTS));
   std::size_t k = 0;
   forEachPose(state, [&](const Pose& pose) {
-    benchmark::DoNotOptimize(gatherEvidence(visible[k++ % visible.size()], pose, bench.scene.grid,
+    benchmark::DoNotOptimize(gatherEvidence(*bench.model, visible[k++ % visible.size()], pose, bench.scene.grid,
                                             bench.scene.surroundings, bench.scene.normals, bench.tolerance,
                                             bench.parameters.verification));
   });
@@ -62,13 +62,13 @@ void outline(benchmark::State& state)
 {
   const Workbench& bench = workbench();
   const double leaf = bench.model->parameters.leaf;
-  std::vector<OrientedPoints> visible;
+  std::vector<SurfaceIndices> visible;
   for (const Pose& pose : bench.poses)
     visible.push_back(visiblePoints(*bench.model, pose));
   std::size_t k = 0;
   forEachPose(state, [&](const Pose& pose) {
     benchmark::DoNotOptimize(
-        gatherOutlineEvidence(visible[k++ % visible.size()], pose, bench.scene.surroundings, leaf, leaf));
+        gatherOutlineEvidence(*bench.model, visible[k++ % visible.size()], pose, bench.scene.surroundings, leaf, leaf));
   });
 }
 BENCHMARK(outline)->Unit(benchmark::kMillisecond);

@@ -40,7 +40,7 @@ struct Detection
   std::string part;
   std::size_t model_index = 0;  ///< into Detector::models()
   Pose T_camera_object = Pose::Identity();
-  double score = 0;                 ///< [0, 1], the sort key
+  double score = 0;                 ///< [0, 1], the sort key: confidence(), or the matching rate where that decides
   double matching_rate = 0;         ///< Equation 9, [0, 1]
   double visible_fraction = 0;      ///< share of the surface facing the camera that was measured there, [0, 1]
   double rms = 0;                   ///< of the point-to-plane residuals after refinement, metres

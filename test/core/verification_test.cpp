@@ -35,14 +35,15 @@ Scene sceneOf(const std::vector<Pose>& poses, double sigma)
 
 PoseEvidence evidenceOf(const Scene& scene, const Pose& T)
 {
-  return gatherEvidence(*test::teeModel(), facingPoints(*test::teeModel(), T, 2000), T, scene.grid, scene.surroundings, scene.normals,
-                        0.0015, {});
+  return gatherEvidence(*test::teeModel(), facingPoints(*test::teeModel(), T, 2000), T, scene.grid, scene.surroundings,
+                        scene.normals, 0.0015, {});
 }
 
 OutlineEvidence outlineOf(const Scene& scene, const Pose& T)
 {
   const double leaf = test::teeModel()->parameters.leaf;
-  return gatherOutlineEvidence(*test::teeModel(), facingPoints(*test::teeModel(), T, 100000), T, scene.surroundings, leaf, leaf);
+  return gatherOutlineEvidence(*test::teeModel(), facingPoints(*test::teeModel(), T, 100000), T, scene.surroundings,
+                               leaf, leaf);
 }
 
 TrainedModel plateModel()
@@ -52,9 +53,9 @@ TrainedModel plateModel()
   return plate;
 }
 
-SurfaceIndices allPoints(const TrainedModel& model)
+SurfaceIndices allPoints(const OrientedPoints& points)
 {
-  SurfaceIndices indices(model.surface.size());
+  SurfaceIndices indices(points.size());
   std::iota(indices.begin(), indices.end(), 0u);
   return indices;
 }
@@ -84,6 +85,22 @@ TEST(Evidence, poseInFreeSpaceIsViolated)
   Pose nearer = poses[0];
   nearer.translation().z() -= 0.05;  // floats above the part
   EXPECT_GT(evidenceOf(scene, nearer).violationShare(), 0.9);
+}
+
+TEST(Evidence, countsAFaceByItsShareOfThePicture)
+{
+  // Two plates of equal size and number of points, one seen frontally, the other at 80 degrees: cos 80 deg = 0.17.
+  TrainedModel plate = plateModel();
+  plate.near_crease.assign(plate.surface.size(), 0);
+  const DepthGrid nothing = makeGrid(480, 384, test::smallCamera());
+  const std::vector<Eigen::Vector3f> normals(nothing.size(), Eigen::Vector3f::Constant(NAN));
+  const auto facing = [&](double tilt) {
+    Pose T = Pose::Identity();
+    T.linear() = Eigen::AngleAxisd(M_PI + tilt, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    T.translation().z() = 3;  // far: nearly parallel rays
+    return gatherEvidence(plate, allPoints(plate.surface), T, nothing, nothing, normals, 0.001, {}).facing;
+  };
+  EXPECT_NEAR(facing(80 * M_PI / 180) / facing(0), std::cos(80 * M_PI / 180), 0.02);
 }
 
 TEST(Evidence, hiddenPoseIsNeitherRightNorWrong)
@@ -129,7 +146,7 @@ TEST(Outline, goesOnWhereTheSurfaceIsLarger)
   Pose T = Pose::Identity();
   T.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
   T.translation().z() = 0.6;
-  const OutlineEvidence evidence = gatherOutlineEvidence(plate, allPoints(plate), T, flat, 0.004, 0.004);
+  const OutlineEvidence evidence = gatherOutlineEvidence(plate, allPoints(plate.surface), T, flat, 0.004, 0.004);
   EXPECT_EQ(evidence.ends, 0);
   EXPECT_GT(evidence.continues, 30);
   EXPECT_LT(evidence.share(), 0.1);
@@ -140,7 +157,8 @@ TEST(Outline, withoutDataItDecidesNothing)
   const DepthGrid nothing = makeGrid(480, 384, test::smallCamera());
   Pose T = Pose::Identity();
   T.translation().z() = 0.6;
-  const OutlineEvidence evidence = gatherOutlineEvidence(plateModel(), allPoints(plateModel()), T, nothing, 0.004, 0.004);
+  const OutlineEvidence evidence =
+      gatherOutlineEvidence(plateModel(), allPoints(plateModel().surface), T, nothing, 0.004, 0.004);
   EXPECT_EQ(evidence.ends + evidence.continues, 0);
   EXPECT_NEAR(evidence.share(), 2.0 / 3, 1e-9);
 }
@@ -170,8 +188,8 @@ TEST(IcpProjective, removesASmallErrorAndStaysRigid)
     Pose start = truth;
     start.linear() = truth.linear() * Eigen::AngleAxisd(0.06, test::unitVector(random)).toRotationMatrix();
     start.translation() += 0.002 * test::unitVector(random);
-    const IcpResult result = icpProjective(test::teeModel()->surface, facingPoints(*test::teeModel(), start, 800), scene.grid, scene.normals,
-                                           start, test::teeModel()->parameters.leaf, {});
+    const IcpResult result = icpProjective(test::teeModel()->surface, facingPoints(*test::teeModel(), start, 800),
+                                           scene.grid, scene.normals, start, test::teeModel()->parameters.leaf, {});
     // sigma 0.1 mm on some 2000 pixels: the statistical error is below 0.01 mm; edges and quantisation leave more.
     EXPECT_LT((result.T_camera_object * test::teeModel()->center - truth * test::teeModel()->center).norm(), 0.0003);
     EXPECT_LT(test::rotationError(result.T_camera_object, truth), 0.008);
@@ -194,7 +212,7 @@ TEST(IcpProjective, doesNotSlideAlongACylinder)
   const OrientedPoints model = test::cylinder(0.02, 0.1, 4000);
   Pose start = T;
   start.translation() += Eigen::Vector3d(0.003, 0.0015, 0.001);
-  const IcpResult result = icpProjective(model, grid, normals, start, 0.004, {});
+  const IcpResult result = icpProjective(model, allPoints(model), grid, normals, start, 0.004, {});
   const Eigen::Vector3d moved = result.T_camera_object.translation() - T.translation();
   EXPECT_NEAR(moved.x(), 0.003, 0.0005) << "slid along the axis";
   EXPECT_NEAR(moved.y(), 0, 0.0002);
@@ -206,8 +224,8 @@ TEST(IcpProjective, withoutDataThePoseStaysAndRmsIsNan)
   const DepthGrid nothing = makeGrid(480, 384, test::smallCamera());
   const std::vector<Eigen::Vector3f> normals(nothing.size(), Eigen::Vector3f::Constant(NAN));
   const auto start = test::posesApart(1, 1)[0];
-  const IcpResult result =
-      icpProjective(test::teeModel()->surface, facingPoints(*test::teeModel(), start, 500), nothing, normals, start, 0.004, {});
+  const IcpResult result = icpProjective(test::teeModel()->surface, facingPoints(*test::teeModel(), start, 500),
+                                         nothing, normals, start, 0.004, {});
   EXPECT_TRUE(std::isnan(result.rms));
   EXPECT_FALSE(result.converged);
   EXPECT_TRUE(result.T_camera_object.matrix() == start.matrix());

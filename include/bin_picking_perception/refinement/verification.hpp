@@ -17,20 +17,20 @@ struct VerificationParameters
   bool enabled = true;  // false: only the matching rate decides, as in the paper
   double match_distance = 0.005;
   double min_matching_rate = 0.5;
-  double depth_tolerance = 0.02;
-  double noise_tolerance = 8;
+  double depth_tolerance = 0.15;
+  double noise_tolerance = 3;
   double max_normal_angle = 0.7;
   double min_outline_share = 0.3;
-  double min_score = 0.4;
+  double min_score = 0.5;
   double min_visible_fraction = 0.3;
   double min_inlier_share = 0.6;
   double max_violation_share = 0.2;
   double unmeasured_weight = 0.3;
   double min_turn_margin = 10;
-  double min_surface_share = 0.86;
+  double min_surface_share = 0.75;
   double max_bin_penetration = 0.006;
   double overlap = 0.35;
-  int max_refined = 80;
+  int max_refined = 120;
 
   void visit(ParameterVisitor& v);
 };

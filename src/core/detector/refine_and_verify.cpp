@@ -29,7 +29,7 @@ Ranked lookAt(const Hypothetical& pose, const PreparedScene& scene, const Traine
   const PoseEvidence evidence =
       gatherEvidence(model, facing, pose.T_camera_object, scene.grid, scene.surroundings, scene.normals,
                      UNREFINED * depthTolerance(scene, model, parameters), parameters);
-  return {&pose, poseScore(evidence, 1, parameters),
+  return {&pose, poseScore(evidence, parameters),
           coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell)};
 }
 

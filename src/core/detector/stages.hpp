@@ -71,8 +71,8 @@ struct Assessed
   std::vector<int> cells;
 };
 
-/// What ranks a pose, [0, 1]. \param outline_share 1 where it is not known yet
-double poseScore(const PoseEvidence& evidence, double outline_share, const VerificationParameters& parameters);
+/// What ranks poses before they are refined, [0, 1].
+double poseScore(const PoseEvidence& evidence, const VerificationParameters& parameters);
 
 /// Distance to the part's surface that still explains a measured point, metres.
 double depthTolerance(const PreparedScene& scene, const TrainedModel& model, const VerificationParameters& parameters);

@@ -38,8 +38,9 @@ void VerificationParameters::visit(ParameterVisitor& v)
            "free; parts packed side by side at one height need less",
            0, 1},
           min_outline_share);
-  v.field({"min_score", "", "smallest accepted score: inlier share, visible fraction and outline share together", 0, 1},
-          min_score);
+  v.field(
+      {"min_score", "", "smallest accepted probability that a pose is right; more returns fewer and surer ones", 0, 1},
+      min_score);
   v.field({"unmeasured_weight", "",
            "how much a point without data speaks against a pose, compared to a contradicted one", 0, 1},
           unmeasured_weight);

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+namespace bin_picking
+{
+/// What speaks for and against a refined pose, in numbers that mean the same for every part.
+struct PoseQuality
+{
+  double inlier_share = 0;     ///< PoseEvidence::inlierShare
+  double violation_share = 0;  ///< PoseEvidence::violationShare
+  double surface_share = 0;    ///< surfaceShare
+  double outline_share = 0;    ///< OutlineEvidence::share
+  double turn_margin = 0;      ///< RivalChoice::margin; infinity: there is no rival
+  double bin_penetration = 0;  ///< metres; 0 without a bin
+};
+
+/// Probability that the pose is right, that is, that no point of the part is off by more than a tenth of its diameter:
+/// a logistic regression on the poses that were tested in virtual bins of all parts of config/parts
+/// (benchmark/calibration.py fits it and prints how well it holds on other bins).
+double confidence(const PoseQuality& quality);
+}  // namespace bin_picking
