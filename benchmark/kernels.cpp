@@ -55,7 +55,7 @@ Workbench makeWorkbench()
   scanBin(bench);
   DetectionResult ignored;
   StageClock clock(ignored);
-  bench.scene = reduceScene(bench.raw, &bench.bin, *bench.model, bench.parameters, clock);
+  bench.scene = reduceScene(bench.raw, &bench.bin, *bench.model, bench.parameters, bench.executor, clock);
   describeScene(bench.scene, *bench.model, bench.parameters, bench.executor, clock);
   const VerificationParameters& verification = bench.parameters.verification;
   bench.tolerance =

@@ -4,6 +4,7 @@
 #include <pcl/point_types.h>
 
 #include "bin_picking_perception/scene/cloud_input.hpp"
+#include "bin_picking_perception/scene/grid_connectivity.hpp"
 #include "bin_picking_perception/scene/preprocessing.hpp"
 #include "bin_picking_perception/scene/surface_resampling.hpp"
 #include "kernels.hpp"
@@ -20,47 +21,57 @@ pcl::PointCloud<pcl::PointXYZ> cloudOf(const DepthGrid& grid)
   return cloud;
 }
 
-void cloudToGrid(benchmark::State& state)
+void cloudCheck(benchmark::State& state)
 {
   const Workbench& bench = workbench();
   const pcl::PointCloud<pcl::PointXYZ> cloud = cloudOf(bench.raw);
   for (auto _ : state)
-    benchmark::DoNotOptimize(makeGrid(cloud, bench.parameters.input));
-  countPer(state, "pixel", bench.raw.size());
+    benchmark::DoNotOptimize(viewOf(cloud, bench.parameters.input));
 }
-BENCHMARK(cloudToGrid)->Unit(benchmark::kMillisecond);
+BENCHMARK(cloudCheck)->Unit(benchmark::kMillisecond);
 
-void gridReduction(benchmark::State& state)
+void cloudReduction(benchmark::State& state)
 {
   const Workbench& bench = workbench();
+  const pcl::PointCloud<pcl::PointXYZ> cloud = cloudOf(bench.raw);
+  const PointView points = viewOf(cloud, bench.parameters.input);
   for (auto _ : state)
-    benchmark::DoNotOptimize(reduceGrid(bench.raw, bench.scene.reduction));
-  countPer(state, "pixel", bench.raw.size());
+    benchmark::DoNotOptimize(reduceGrid(points, bench.scene.reduction, bench.executor));
+  countPer(state, "pixel", points.size());
 }
-BENCHMARK(gridReduction)->Unit(benchmark::kMillisecond);
+BENCHMARK(cloudReduction)->Unit(benchmark::kMillisecond);
 
 void outlierRemoval(benchmark::State& state)
 {
   const Workbench& bench = workbench();
   DepthGrid cropped = bench.scene.surroundings;
-  cropToRegion(cropped, bench.parameters.input, &bench.bin);
+  cropToRegion(cropped, bench.parameters.input, &bench.bin, bench.executor);
   for (auto _ : state)
   {
     state.PauseTiming();
     DepthGrid grid = cropped;
     state.ResumeTiming();
-    removeOutliers(grid, bench.parameters.preprocessing);
+    removeOutliers(grid, bench.parameters.preprocessing, bench.executor);
     benchmark::DoNotOptimize(grid);
   }
   countPer(state, "pixel", cropped.size());
 }
 BENCHMARK(outlierRemoval)->Unit(benchmark::kMillisecond);
 
+void connectivity(benchmark::State& state)
+{
+  const Workbench& bench = workbench();
+  for (auto _ : state)
+    benchmark::DoNotOptimize(connectedRuns(bench.scene.grid, EdgeRule(), bench.executor));
+  countPer(state, "pixel", bench.scene.grid.size());
+}
+BENCHMARK(connectivity)->Unit(benchmark::kMillisecond);
+
 void depthNoise(benchmark::State& state)
 {
   const Workbench& bench = workbench();
   for (auto _ : state)
-    benchmark::DoNotOptimize(estimateDepthNoise(bench.scene.grid));
+    benchmark::DoNotOptimize(estimateDepthNoise(bench.scene.grid, bench.scene.runs));
   countPer(state, "pixel", bench.scene.grid.size());
 }
 BENCHMARK(depthNoise)->Unit(benchmark::kMillisecond);
@@ -70,7 +81,7 @@ void normals(benchmark::State& state)
   const Workbench& bench = workbench();
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        estimateGridNormals(bench.scene.grid, bench.model->parameters.normal_radius, bench.executor));
+        estimateGridNormals(bench.scene.grid, bench.scene.runs, bench.model->parameters.normal_radius, bench.executor));
   countPer(state, "pixel", bench.scene.grid.size());
 }
 BENCHMARK(normals)->Unit(benchmark::kMillisecond);
@@ -92,7 +103,7 @@ void curvature(benchmark::State& state)
   const TrainingParameters& trained = bench.model->parameters;
   for (auto _ : state)
   {
-    estimateGridCurvature(samples, bench.scene.grid, bench.scene.normals, trained.curvature_measure,
+    estimateGridCurvature(samples, bench.scene.grid, bench.scene.runs, bench.scene.normals, trained.curvature_measure,
                           trained.curvature_radius, OPPOSITE_WALL_ANGLE, bench.executor);
     benchmark::ClobberMemory();
   }
@@ -106,7 +117,7 @@ void segmentation(benchmark::State& state, SegmentationMethod method)
   SegmentationParameters parameters = bench.parameters.segmentation;
   parameters.method = method;
   for (auto _ : state)
-    benchmark::DoNotOptimize(segmentScene(bench.scene.grid, parameters, &bench.bin));
+    benchmark::DoNotOptimize(segmentScene(bench.scene.grid, parameters, &bench.bin, bench.executor));
   countPer(state, "pixel", bench.scene.grid.size());
 }
 BENCHMARK_CAPTURE(segmentation, depth_edges, SegmentationMethod::DepthEdges)->Unit(benchmark::kMillisecond);
@@ -115,7 +126,8 @@ BENCHMARK_CAPTURE(segmentation, watershed, SegmentationMethod::Watershed)->Unit(
 void candidates(benchmark::State& state)
 {
   const Workbench& bench = workbench();
-  const Segmentation segments = segmentScene(bench.scene.grid, bench.parameters.segmentation, &bench.bin);
+  const Segmentation segments =
+      segmentScene(bench.scene.grid, bench.parameters.segmentation, &bench.bin, bench.executor);
   for (auto _ : state)
     benchmark::DoNotOptimize(selectCandidates(segments, bench.scene.grid, *bench.model, bench.parameters.segmentation));
   countPer(state, "segment", segments.segments.size());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/model/depth_renderer.hpp"
 #include "bin_picking_perception/scene/cloud_input.hpp"
 #include "bin_picking_perception/scene/preprocessing.hpp"
@@ -62,9 +63,9 @@ Evidence gather(const PeerPose& pose, const PeerModel& model, const DepthGrid& s
 
 std::vector<PeerPose> checkedByDepth(const std::vector<PeerPose>& poses, const PeerModel& model, const PeerScene& scene)
 {
-  const DepthGrid measured = reduceGrid(scene.grid, REDUCTION);
+  const DepthGrid measured = reduceGrid(scene.grid, REDUCTION, Executor(1));
   DepthGrid searched = measured;
-  cropToRegion(searched, {}, scene.bin ? &*scene.bin : nullptr);
+  cropToRegion(searched, {}, scene.bin ? &*scene.bin : nullptr, Executor(1));
   std::vector<Evidence> all;
   for (const PeerPose& pose : poses)
     all.push_back(gather(pose, model, searched, measured));

@@ -121,8 +121,8 @@ PeerScene loadPeerScene(const EvaluationScene& scene, const PeerModel& model)
     loaded.cloud = loadSceneCloud(scene);
   loaded.grid = scene.depth_image ? loadSceneGrid(scene, input) : makeGrid(loaded.cloud, input);
   loaded.bin = scene.bin;
-  DepthGrid searched = reduceGrid(loaded.grid, scene.bin ? 2 : 1);
-  cropToRegion(searched, input, scene.bin ? &*scene.bin : nullptr);
+  DepthGrid searched = reduceGrid(loaded.grid, scene.bin ? 2 : 1, Executor(1));
+  cropToRegion(searched, input, scene.bin ? &*scene.bin : nullptr, Executor(1));
   loaded.points = measuredPoints(searched, estimateGridNormals(searched, NORMAL_RADIUS * model.diameter, Executor(1)));
   loaded.fine = sampledInCubes(loaded.points, SURFACE_SPACING * model.diameter);
   return loaded;

@@ -122,6 +122,7 @@ public:
   const DetectorParameters& parameters() const { return parameters_; }
 
 private:
+  DetectionResult detectIn(const PointView& points, const Request& request) const;
   std::vector<std::size_t> requestedModels(const Request& request) const;
 
   std::vector<std::shared_ptr<const TrainedModel>> models_;

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/scene/cloud_input.hpp"
 #include "core/analytic_scenes.hpp"
 
@@ -159,7 +160,7 @@ TEST(CloudInput, LimitsCutTheRegion)
   limits.y_max = 0.04;
   limits.z_max = 0.81;
   const int before = numValid(grid);
-  cropToRegion(grid, limits, nullptr);
+  cropToRegion(grid, limits, nullptr, Executor(1));
   EXPECT_GT(numValid(grid), 100);
   EXPECT_LT(numValid(grid), before);
   for (int i = 0; i < static_cast<int>(grid.size()); ++i)
@@ -182,7 +183,7 @@ TEST(CloudInput, TheBinKeepsWhatLiesAboveItsFloorAndBetweenItsWalls)
   bin.inner_size = {0.3, 0.16, 0.1};
   InputParameters parameters;
   parameters.bin_wall_margin = 0.01;
-  cropToRegion(grid, parameters, &bin);
+  cropToRegion(grid, parameters, &bin, Executor(1));
   int on_box = 0;
   int above_rim = 0;
   for (int i = 0; i < static_cast<int>(grid.size()); ++i)

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/scene/grid_connectivity.hpp"
 #include "bin_picking_perception/scene/preprocessing.hpp"
 #include "core/analytic_scenes.hpp"
 
@@ -19,9 +20,10 @@ constexpr double MAX_NORMAL_ANGLE = 1.2;
 SceneSamples samplesWithCurvature(const DepthGrid& grid, CurvatureMeasure measure,
                                   const Executor& executor = Executor(1), double radius = RADIUS)
 {
-  const auto normals = estimateGridNormals(grid, 0.004, executor);
+  const ConnectedRuns runs = connectedRuns(grid, EdgeRule(), executor);
+  const auto normals = estimateGridNormals(grid, runs, 0.004, executor);
   SceneSamples samples = sampleScene(grid, normals, 0.003, PreprocessingParameters());
-  estimateGridCurvature(samples, grid, normals, measure, radius, MAX_NORMAL_ANGLE, executor);
+  estimateGridCurvature(samples, grid, runs, normals, measure, radius, MAX_NORMAL_ANGLE, executor);
   return samples;
 }
 

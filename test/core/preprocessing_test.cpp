@@ -37,7 +37,7 @@ TEST(ReduceGrid, PointsStayOnTheSurfaceAndOnTheirRays)
   const DepthGrid grid = render({plane({0, 0, 0.8}, normal)}, 321, 257);  // neither divides by the factor
   for (const int factor : {2, 3, 4})
   {
-    const DepthGrid reduced = reduceGrid(grid, factor);
+    const DepthGrid reduced = reduceGrid(grid, factor, Executor(1));
     EXPECT_EQ(reduced.width, (321 + factor - 1) / factor);
     EXPECT_EQ(reduced.height, (257 + factor - 1) / factor);
     EXPECT_EQ(numValid(reduced), reduced.width * reduced.height);
@@ -56,7 +56,7 @@ TEST(ReduceGrid, DepthEdgesAreNotAveraged)
 {
   // A plate 50 mm above a floor, its edge in the middle of blocks.
   const DepthGrid grid = render({rectangle({0.0013, 0.0007, 0.75}, 0.1, 0.1), plane({0, 0, 0.8}, {0, 0, -1})});
-  const DepthGrid reduced = reduceGrid(grid, 4);
+  const DepthGrid reduced = reduceGrid(grid, 4, Executor(1));
   for (const float z : reduced.z)
     EXPECT_TRUE(std::abs(z - 0.75f) < 1e-5f || std::abs(z - 0.8f) < 1e-5f) << z;
 }
@@ -70,7 +70,7 @@ TEST(ReduceGrid, AMixedBlockKeepsItsLargerSurfaceAndANearTieTheNearerOne)
   setPoint(grid, 1, 1, 0.9);
   setPoint(grid, 2, 0, 0.9);
   setPoint(grid, 3, 0, 0.8);
-  const DepthGrid reduced = reduceGrid(grid, 2);
+  const DepthGrid reduced = reduceGrid(grid, 2, Executor(1));
   EXPECT_FLOAT_EQ(reduced.z[0], 0.9f);
   EXPECT_FLOAT_EQ(reduced.z[1], 0.8f);
 }
@@ -78,10 +78,10 @@ TEST(ReduceGrid, AMixedBlockKeepsItsLargerSurfaceAndANearTieTheNearerOne)
 TEST(ReduceGrid, FactorOneCopiesAndZeroIsRefused)
 {
   const DepthGrid grid = render({sphere({0, 0, 0.8}, 0.05)});
-  const DepthGrid copy = reduceGrid(grid, 1);
+  const DepthGrid copy = reduceGrid(grid, 1, Executor(1));
   EXPECT_EQ(copy.width, grid.width);
   EXPECT_EQ(numValid(copy), numValid(grid));
-  EXPECT_THROW(reduceGrid(grid, 0), ParameterError);
+  EXPECT_THROW(reduceGrid(grid, 0, Executor(1)), ParameterError);
 }
 
 TEST(ReductionFactor, BringsThePitchToAShareOfTheLeaf)
@@ -106,7 +106,7 @@ TEST(RemoveOutliers, StrayPointsGoAndSurfacesStay)
   setPoint(grid, 10, 10, 0.6);    // alone in the empty
   setPoint(grid, 160, 128, 0.7);  // in front of the surface
   setPoint(grid, 170, 128, 0.9);  // behind it
-  removeOutliers(grid, PreprocessingParameters());
+  removeOutliers(grid, PreprocessingParameters(), Executor(1));
   EXPECT_FALSE(grid.valid(grid.index(10, 10)));
   EXPECT_FALSE(grid.valid(grid.index(160, 128)));
   EXPECT_FALSE(grid.valid(grid.index(170, 128)));
@@ -117,9 +117,9 @@ TEST(RemoveOutliers, StrayPointsGoAndSurfacesStay)
   off.outlier_window = 0;
   const int few = numValid(kept);
   ASSERT_GT(few, 0);
-  removeOutliers(kept, off);
+  removeOutliers(kept, off, Executor(1));
   EXPECT_EQ(numValid(kept), few);
-  removeOutliers(kept, PreprocessingParameters());
+  removeOutliers(kept, PreprocessingParameters(), Executor(1));
   EXPECT_EQ(numValid(kept), 0);  // a speck of two pixels
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/segmentation/segmentation.hpp"
 #include "core/analytic_scenes.hpp"
 
@@ -197,6 +198,8 @@ TEST(DepthToGray, TakesTheRangeFromTheDataOrTheBin)
 {
   // Levels from 0.6 to 0.9 m, and one stray point that must not stretch the range.
   DepthGrid grid = makeGrid(1001, 1, testCamera());
+  grid.x.assign(grid.size(), 0);
+  grid.y.assign(grid.size(), 0);
   for (std::size_t i = 0; i < 1000; ++i)
     grid.z[i] = 0.6f + 0.3f * static_cast<float>(i) / 999;
   grid.z[1000] = 5;
@@ -222,7 +225,7 @@ TEST(SegmentScene, SeparatePartsAreCountedAndMeasured)
   {
     parameters.gray_near = 0.7;  // else the lower part would be as dark as the background
     parameters.gray_far = 0.9;
-    const Segmentation s = segmentScene(grid, parameters, nullptr);
+    const Segmentation s = segmentScene(grid, parameters, nullptr, Executor(1));
     ASSERT_EQ(s.segments.size(), 2u);
     const auto& box = s.segments[s.segments[0].mean_depth > 0.79 ? 0 : 1];
     const auto& round = s.segments[s.segments[0].mean_depth > 0.79 ? 1 : 0];
@@ -243,7 +246,7 @@ TEST(SegmentScene, SeparatePartsAreCountedAndMeasured)
 TEST(SegmentScene, APartOnTopOfAnotherIsCutAtItsDepthEdge)
 {
   const DepthGrid grid = render({rectangle({0, 0, 0.8}, 0.12, 0.1), rectangle({0.01, 0, 0.785}, 0.05, 0.04)});
-  const Segmentation s = segmentScene(grid, byDepthEdges(), nullptr);
+  const Segmentation s = segmentScene(grid, byDepthEdges(), nullptr, Executor(1));
   ASSERT_EQ(s.segments.size(), 2u);
   for (std::size_t i = 0; i < grid.size(); ++i)
     if (s.labels[i] > 0)
@@ -259,7 +262,7 @@ TEST(SegmentScene, CurvedAndNoisySurfacesWithHolesStayWhole)
   std::mt19937 generator(3);
   for (int k = 0; k < 100; ++k)
     grid.invalidate(grid.index(120 + static_cast<int>(generator() % 80), 110 + static_cast<int>(generator() % 35)));
-  const Segmentation s = segmentScene(grid, byDepthEdges(), nullptr);
+  const Segmentation s = segmentScene(grid, byDepthEdges(), nullptr, Executor(1));
   ASSERT_FALSE(s.segments.empty());
   int largest = 0;
   for (const auto& segment : s.segments)
@@ -273,9 +276,9 @@ TEST(SegmentScene, NarrowPassagesAreCutAndWideOnesAreNot)
   const DepthGrid grid = render({rectangle({-0.04, 0, 0.8}, 0.05, 0.05), rectangle({0.04, 0, 0.8}, 0.05, 0.05),
                                  rectangle({0, 0, 0.8}, 0.04, 0.016)});
   SegmentationParameters parameters = byDepthEdges();
-  EXPECT_EQ(segmentScene(grid, parameters, nullptr).segments.size(), 2u);
+  EXPECT_EQ(segmentScene(grid, parameters, nullptr, Executor(1)).segments.size(), 2u);
   parameters.neck = 0.2;
-  EXPECT_EQ(segmentScene(grid, parameters, nullptr).segments.size(), 1u);
+  EXPECT_EQ(segmentScene(grid, parameters, nullptr, Executor(1)).segments.size(), 1u);
 }
 
 TEST(SegmentScene, WithoutAMethodAllIsOneSegment)
@@ -283,7 +286,7 @@ TEST(SegmentScene, WithoutAMethodAllIsOneSegment)
   const DepthGrid grid = render({rectangle({-0.08, 0, 0.8}, 0.06, 0.04), disc({0.06, 0.02, 0.78}, 0.03)});
   SegmentationParameters parameters;
   parameters.method = SegmentationMethod::None;
-  const Segmentation s = segmentScene(grid, parameters, nullptr);
+  const Segmentation s = segmentScene(grid, parameters, nullptr, Executor(1));
   ASSERT_EQ(s.segments.size(), 1u);
   EXPECT_EQ(s.segments[0].pixels, numValid(grid));
 }
@@ -294,8 +297,8 @@ TEST(SegmentScene, NothingGivesNoSegments)
   {
     SegmentationParameters parameters;
     parameters.method = method;
-    EXPECT_TRUE(segmentScene(makeGrid(40, 30, testCamera()), parameters, nullptr).segments.empty());
-    EXPECT_TRUE(segmentScene(makeGrid(0, 0, testCamera()), parameters, nullptr).segments.empty());
+    EXPECT_TRUE(segmentScene(makeGrid(40, 30, testCamera()), parameters, nullptr, Executor(1)).segments.empty());
+    EXPECT_TRUE(segmentScene(makeGrid(0, 0, testCamera()), parameters, nullptr, Executor(1)).segments.empty());
   }
 }
 
@@ -309,7 +312,7 @@ TEST(SelectCandidates, WholeViewsAreAcceptedHalfOnesAndPairsAreNot)
               disc({0.04, 0.04, 0.8}, 0.02), disc({0.07, 0.04, 0.8}, 0.02), disc({0.1, -0.08, 0.8}, 0.002)});
   SegmentationParameters parameters = byDepthEdges();
   parameters.neck = 0.3;  // so that the touching pair is one segment
-  const Segmentation s = segmentScene(grid, parameters, nullptr);
+  const Segmentation s = segmentScene(grid, parameters, nullptr, Executor(1));
   ASSERT_EQ(s.segments.size(), 4u);
   const int whole = s.labels[static_cast<std::size_t>(grid.index(60, 167))];
   const auto candidates = selectCandidates(s, grid, roundModel(), parameters);
@@ -329,7 +332,7 @@ TEST(SelectCandidates, WholeViewsAreAcceptedHalfOnesAndPairsAreNot)
 TEST(SelectCandidates, ViewsAreScaledToTheDepthAndHigherPartsComeFirst)
 {
   const DepthGrid grid = render({disc({-0.05, 0, 0.95}, 0.02), disc({0.05, 0, 0.6}, 0.02)});
-  const Segmentation s = segmentScene(grid, byDepthEdges(), nullptr);
+  const Segmentation s = segmentScene(grid, byDepthEdges(), nullptr, Executor(1));
   const auto candidates = selectCandidates(s, grid, roundModel(), byDepthEdges());
   ASSERT_EQ(candidates.size(), 2u);
   for (const auto& candidate : candidates)
@@ -341,7 +344,7 @@ TEST(SelectCandidates, ViewsAreScaledToTheDepthAndHigherPartsComeFirst)
 TEST(SelectCandidates, TheBestFittingViewDecides)
 {
   const DepthGrid grid = render({rectangle({0, 0, 0.8}, 0.08, 0.02)});
-  const Segmentation s = segmentScene(grid, byDepthEdges(), nullptr);
+  const Segmentation s = segmentScene(grid, byDepthEdges(), nullptr, Executor(1));
   TrainedModel model = roundModel();
   SegmentationParameters loose = byDepthEdges();
   loose.max_contour_ratio = 1.8;

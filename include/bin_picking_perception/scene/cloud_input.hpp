@@ -7,6 +7,7 @@
 #include "bin_picking_perception/common/parameters.hpp"
 #include "bin_picking_perception/scene/bin.hpp"
 #include "bin_picking_perception/scene/depth_grid.hpp"
+#include "bin_picking_perception/scene/point_view.hpp"
 
 namespace pcl
 {
@@ -17,6 +18,8 @@ class PointCloud;
 
 namespace bin_picking
 {
+class Executor;
+
 /// What is taken as a measurement, and the box in which parts are searched. The limits hold in the camera frame; a bin
 /// given with the request narrows them further.
 struct InputParameters
@@ -36,20 +39,23 @@ struct InputParameters
   void visit(ParameterVisitor& v);
 };
 
-/// The organized cloud as a grid: NaN, infinity, (0, 0, 0) and absurdly large values become invalid; the pinhole camera
-/// is fitted to the points.
+/// The points of an organized cloud, which is not copied, and the pinhole camera that fits them. NaN, infinity, (0, 0,
+/// 0), absurdly large values and what lies behind the camera count as not measured.
 /// \throws CloudError Empty, BadLayout, Unorganized, AllInvalid, UnitSuspect (median depth above max_plausible_depth:
 /// it
 ///   looks like millimetres), NoProjection (pixel residual above max_projection_error)
+PointView viewOf(const pcl::PointCloud<pcl::PointXYZ>& cloud, const InputParameters& parameters);
+
+/// viewOf(), copied: what is not measured becomes NaN.
 DepthGrid makeGrid(const pcl::PointCloud<pcl::PointXYZ>& cloud, const InputParameters& parameters);
 
 /// Invalidates what lies outside the limits and, if a bin is given, outside of its inner box (above floor + margin,
 /// also above the rim).
-void cropToRegion(DepthGrid& grid, const InputParameters& parameters, const Bin* bin);
+void cropToRegion(DepthGrid& grid, const InputParameters& parameters, const Bin* bin, const Executor& executor);
 
-/// Least squares fit of a pinhole camera to the grid's points, without those that miss it. \param error median pixel
-/// residual; infinity if the points fix no camera (fewer than three, or in one row, column or ray)
-PinholeCamera fitPinholeCamera(const DepthGrid& grid, double& error);
+/// Least squares fit of a pinhole camera to a lattice of the points, without those that miss it. \param error median
+/// pixel residual; infinity if the points fix no camera (fewer than three, or in one row, column or ray)
+PinholeCamera fitPinholeCamera(const PointView& points, double& error);
 
 /// Reads a PCD file as it is. \throws FileError missing, not PCD, no x/y/z
 pcl::PointCloud<pcl::PointXYZ> loadCloud(const std::string& path);

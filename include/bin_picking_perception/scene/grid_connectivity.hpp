@@ -9,6 +9,8 @@
 
 namespace bin_picking
 {
+class Executor;
+
 /// When two neighbouring pixels lie on one surface: their depths differ by at most depth + slope * pitch, or the jump
 /// continues the slope on both of its sides (a steep surface, not an edge). A fixed depth limit alone would cut every
 /// surface that is steeper than about 35 degrees.
@@ -18,17 +20,17 @@ struct EdgeRule
   double slope = 2.2;    ///< depth change per lateral step that is still a surface: 65 degrees
 };
 
-/// Per pixel, how many pixels one can go in each direction without crossing a depth edge or a missing pixel.
+/// Per pixel, how many pixels one can go in each direction without crossing a depth edge or a missing pixel; counted up
+/// to LONGEST, which is more than any neighbourhood needs.
 struct ConnectedRuns
 {
-  std::vector<std::uint16_t> left;
-  std::vector<std::uint16_t> right;
-  std::vector<std::uint16_t> up;
-  std::vector<std::uint16_t> down;
+  static constexpr std::uint8_t LONGEST = 255;
+
+  std::vector<std::uint8_t> left;
+  std::vector<std::uint8_t> right;
+  std::vector<std::uint8_t> up;
+  std::vector<std::uint8_t> down;
 };
 
-ConnectedRuns connectedRuns(const DepthGrid& grid, const EdgeRule& rule);
-
-/// Median depth of the measured pixels, metres; NaN if there are none.
-double medianDepth(const DepthGrid& grid);
+ConnectedRuns connectedRuns(const DepthGrid& grid, const EdgeRule& rule, const Executor& executor);
 }  // namespace bin_picking

@@ -9,10 +9,12 @@
 #include "bin_picking_perception/common/parameters.hpp"
 #include "bin_picking_perception/scene/curvature.hpp"
 #include "bin_picking_perception/scene/depth_grid.hpp"
+#include "bin_picking_perception/scene/point_view.hpp"
 
 namespace bin_picking
 {
 class Executor;
+struct ConnectedRuns;
 
 /// From the raw grid to the surface samples that are matched.
 struct PreprocessingParameters
@@ -29,21 +31,24 @@ struct PreprocessingParameters
 
 /// Merges blocks of factor x factor pixels into one: the mean of the block's points that lie near the block's median
 /// depth (a mixed block keeps its larger surface; points are never averaged across a depth edge). factor 1 copies.
-DepthGrid reduceGrid(const DepthGrid& grid, int factor);
+DepthGrid reduceGrid(const PointView& points, int factor, const Executor& executor);
 
-/// Block size that brings the grid's pitch at its median depth to about leaf / pixels_per_leaf; at least 1.
-int reductionFactor(const DepthGrid& grid, double leaf, const PreprocessingParameters& parameters);
+/// Block size that brings the pitch at the median depth to about leaf / pixels_per_leaf; at least 1.
+int reductionFactor(const PointView& points, double leaf, const PreprocessingParameters& parameters);
 
 /// Invalidates points with fewer than outlier_min_share of their (2 window + 1)^2 - 1 neighbours within
 /// outlier_distance along the ray direction (slope-aware: the limit grows with the local pitch).
-void removeOutliers(DepthGrid& grid, const PreprocessingParameters& parameters);
+void removeOutliers(DepthGrid& grid, const PreprocessingParameters& parameters, const Executor& executor);
 
 /// Unit normals towards the camera, one per pixel, by a plane fit over the neighbours within `radius` (metres) that are
 /// connected without a depth edge; NaN where there is no point or no plane.
+/// \param runs the grid's, by the default edge rule
+std::vector<Eigen::Vector3f> estimateGridNormals(const DepthGrid& grid, const ConnectedRuns& runs, double radius,
+                                                 const Executor& executor);
 std::vector<Eigen::Vector3f> estimateGridNormals(const DepthGrid& grid, double radius, const Executor& executor);
 
 /// Standard deviation of the depth noise, metres: robust, from residuals of small plane fits. 0 if there is no plane.
-double estimateDepthNoise(const DepthGrid& grid);
+double estimateDepthNoise(const DepthGrid& grid, const ConnectedRuns& runs);
 
 /// Samples of the scene's surface on the leaf grid.
 struct SceneSamples : OrientedPoints
@@ -61,6 +66,7 @@ SceneSamples sampleScene(const DepthGrid& grid, const std::vector<Eigen::Vector3
 
 /// Fills samples.curvature (and curvature_complete) from the grid points within `radius` that are connected to the
 /// sample without crossing a depth edge and whose normal is within max_normal_angle of the sample's.
-void estimateGridCurvature(SceneSamples& samples, const DepthGrid& grid, const std::vector<Eigen::Vector3f>& normals,
-                           CurvatureMeasure measure, double radius, double max_normal_angle, const Executor& executor);
+void estimateGridCurvature(SceneSamples& samples, const DepthGrid& grid, const ConnectedRuns& runs,
+                           const std::vector<Eigen::Vector3f>& normals, CurvatureMeasure measure, double radius,
+                           double max_normal_angle, const Executor& executor);
 }  // namespace bin_picking

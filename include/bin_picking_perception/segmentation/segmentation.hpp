@@ -13,6 +13,8 @@
 
 namespace bin_picking
 {
+class Executor;
+
 enum class SegmentationMethod
 {
   None,       ///< the whole region is one segment
@@ -68,7 +70,8 @@ std::vector<std::int32_t> watershedSegments(const std::vector<std::uint8_t>& gra
                                             const SegmentationParameters& parameters);
 
 /// Segments of the grid by the chosen method. Deterministic.
-Segmentation segmentScene(const DepthGrid& grid, const SegmentationParameters& parameters, const Bin* bin);
+Segmentation segmentScene(const DepthGrid& grid, const SegmentationParameters& parameters, const Bin* bin,
+                          const Executor& executor);
 
 /// A segment that looks like one whole part from some side.
 struct CandidateTarget

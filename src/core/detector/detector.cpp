@@ -42,9 +42,9 @@ std::vector<std::size_t> Detector::requestedModels(const Request& request) const
 DetectionResult Detector::detect(const pcl::PointCloud<pcl::PointXYZ>& cloud, const Request& request) const
 {
   const auto start = std::chrono::steady_clock::now();
-  const DepthGrid grid = makeGrid(cloud, parameters_.input);
+  const PointView points = viewOf(cloud, parameters_.input);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  DetectionResult result = detect(grid, request);
+  DetectionResult result = detectIn(points, request);
   result.timing.insert(result.timing.begin(), {"input", seconds});
   result.total_seconds += seconds;
   return result;
@@ -78,26 +78,31 @@ void reportEmptyBin(DetectionResult& result, double measured, int required)
 
 DetectionResult Detector::detect(const DepthGrid& grid, const Request& request) const
 {
+  return detectIn(grid, request);
+}
+
+DetectionResult Detector::detectIn(const PointView& points, const Request& request) const
+{
   const std::vector<std::size_t> indices = requestedModels(request);
   const Deadline deadline(request.deadline > 0 ? request.deadline : parameters_.deadline);
   const Bin* bin = request.bin ? &*request.bin : nullptr;
   DetectionResult result;
   StageClock clock(result);
 
-  const int comparison_cell = comparisonCell(grid, models_);
+  const int comparison_cell = comparisonCell(points, models_);
   std::vector<Assessed> assessed;
   double most_measured = 0;  // parts see the scene at their own leaf: empty is what is empty for all
   for (const std::size_t index : indices)
   {
     const TrainedModel& model = *models_[index];
-    PreparedScene scene = reduceScene(grid, bin, model, parameters_, clock);
+    PreparedScene scene = reduceScene(points, bin, model, parameters_, executor_, clock);
     const double measured = measuredPoints(scene);
     most_measured = std::max(most_measured, measured);
     if (measured < parameters_.input.empty_bin_points)
       continue;
     clock.count("points", measured);
     describeScene(scene, model, parameters_, executor_, clock);
-    Segmentation segmentation = segmentScene(scene.grid, parameters_.segmentation, bin);
+    Segmentation segmentation = segmentScene(scene.grid, parameters_.segmentation, bin, executor_);
     clock.count("segments", static_cast<double>(segmentation.segments.size()));
     const auto candidates = selectCandidates(segmentation, scene.grid, model, parameters_.segmentation);
     clock.count("candidates", static_cast<double>(candidates.size()));

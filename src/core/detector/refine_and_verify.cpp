@@ -85,21 +85,13 @@ double sharedPart(const std::vector<int>& cells, const std::vector<int>& explain
 }
 }  // namespace
 
-int comparisonCell(const DepthGrid& raw, const std::vector<std::shared_ptr<const TrainedModel>>& models)
+int comparisonCell(const PointView& raw, const std::vector<std::shared_ptr<const TrainedModel>>& models)
 {
-  std::vector<float> depths;
-  constexpr std::size_t EVERY = 31;  // enough for a median
-  for (std::size_t i = 0; i < raw.size(); i += EVERY)
-    if (!std::isnan(raw.z[i]))
-      depths.push_back(raw.z[i]);
   double leaf = 0;
   for (const auto& model : models)
     leaf = std::max(leaf, model->parameters.leaf);
-  if (depths.empty())
-    return 1;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return std::max(1, static_cast<int>(std::lround(leaf / raw.pitch(static_cast<double>(*middle)))));
+  const double depth = medianDepth(raw);
+  return depth > 0 ? std::max(1, static_cast<int>(std::lround(leaf / raw.pitch(depth)))) : 1;
 }
 
 std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, const PreparedScene& scene,

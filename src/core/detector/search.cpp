@@ -10,19 +10,19 @@
 
 namespace bin_picking
 {
-PreparedScene reduceScene(const DepthGrid& raw, const Bin* bin, const TrainedModel& model,
-                          const DetectorParameters& parameters, StageClock& clock)
+PreparedScene reduceScene(const PointView& raw, const Bin* bin, const TrainedModel& model,
+                          const DetectorParameters& parameters, const Executor& executor, StageClock& clock)
 {
   PreparedScene scene;
   if (bin)
     scene.bin = *bin;
   scene.reduction = reductionFactor(raw, model.parameters.leaf, parameters.preprocessing);
-  scene.surroundings = reduceGrid(raw, scene.reduction);
+  scene.surroundings = reduceGrid(raw, scene.reduction, executor);
   clock.lap("reduction");
   scene.grid = scene.surroundings;
-  cropToRegion(scene.grid, parameters.input, bin);
+  cropToRegion(scene.grid, parameters.input, bin, executor);
   clock.lap("region");
-  removeOutliers(scene.grid, parameters.preprocessing);
+  removeOutliers(scene.grid, parameters.preprocessing, executor);
   clock.lap("outliers");
   return scene;
 }
@@ -37,16 +37,17 @@ void describeScene(PreparedScene& scene, const TrainedModel& model, const Detect
                    const Executor& executor, StageClock& clock)
 {
   const TrainingParameters& trained = model.parameters;
-  scene.noise = estimateDepthNoise(scene.grid);
+  scene.runs = connectedRuns(scene.grid, EdgeRule(), executor);
+  scene.noise = estimateDepthNoise(scene.grid, scene.runs);
   clock.lap("noise");
-  scene.normals = estimateGridNormals(scene.grid, trained.normal_radius, executor);
+  scene.normals = estimateGridNormals(scene.grid, scene.runs, trained.normal_radius, executor);
   clock.lap("normals");
   scene.samples = sampleScene(scene.grid, scene.normals, trained.leaf, parameters.preprocessing);
   clock.count("samples", static_cast<double>(scene.samples.size()));
   clock.lap("sampling");
   if (model.table.quantizer().curvature_bins > 1)
-    estimateGridCurvature(scene.samples, scene.grid, scene.normals, trained.curvature_measure, trained.curvature_radius,
-                          OPPOSITE_WALL_ANGLE, executor);
+    estimateGridCurvature(scene.samples, scene.grid, scene.runs, scene.normals, trained.curvature_measure,
+                          trained.curvature_radius, OPPOSITE_WALL_ANGLE, executor);
   clock.lap("curvature");
 }
 

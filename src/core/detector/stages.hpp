@@ -10,6 +10,7 @@
 #include "bin_picking_perception/detector.hpp"
 #include "bin_picking_perception/matching/clustering.hpp"
 #include "bin_picking_perception/refinement/verification.hpp"
+#include "bin_picking_perception/scene/grid_connectivity.hpp"
 #include "stage_clock.hpp"
 
 namespace bin_picking
@@ -20,6 +21,7 @@ struct PreparedScene
   DepthGrid surroundings;                ///< working grid with what lies outside of the region: bin, floor, table
   DepthGrid grid;                        ///< working grid, only the region where parts are searched
   int reduction = 1;                     ///< raw pixels per pixel of the working grid
+  ConnectedRuns runs;                    ///< of the working grid
   std::vector<Eigen::Vector3f> normals;  ///< per pixel of the working grid
   double noise = 0;                      ///< of the depth, metres
   SceneSamples samples;
@@ -45,8 +47,8 @@ struct Hypothetical
 };
 
 /// Reduction, limits and outliers; the rest follows only if there is anything.
-PreparedScene reduceScene(const DepthGrid& raw, const Bin* bin, const TrainedModel& model,
-                          const DetectorParameters& parameters, StageClock& clock);
+PreparedScene reduceScene(const PointView& raw, const Bin* bin, const TrainedModel& model,
+                          const DetectorParameters& parameters, const Executor& executor, StageClock& clock);
 
 /// Measured raw pixels inside the region, estimated from the working grid.
 double measuredPoints(const PreparedScene& scene);
@@ -82,7 +84,7 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
                 const DetectorParameters& parameters, int comparison_cell);
 
 /// Edge of the image cells by which poses are compared: about a leaf of the coarsest model, in raw pixels.
-int comparisonCell(const DepthGrid& raw, const std::vector<std::shared_ptr<const TrainedModel>>& models);
+int comparisonCell(const PointView& raw, const std::vector<std::shared_ptr<const TrainedModel>>& models);
 
 /// The most promising poses, refined by ICP and tested, without those that lie where better ones were accepted.
 std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, const PreparedScene& scene,

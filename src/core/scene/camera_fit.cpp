@@ -10,7 +10,7 @@ namespace bin_picking
 {
 namespace
 {
-constexpr std::size_t MAX_FIT_POINTS = 50000;
+constexpr int ABOUT_FIT_POINTS = 5000;
 constexpr int NUM_REFITS = 4;
 /// Residuals above this many medians, and above half a pixel, do not count in the next fit.
 constexpr double OUTLIER_MEDIANS = 3;
@@ -82,6 +82,8 @@ Line fitRobustly(const std::vector<Ray>& rays)
   for (int k = 0; line.valid && k < NUM_REFITS; ++k)
   {
     const double limit = std::max(MIN_OUTLIER_PIXELS, OUTLIER_MEDIANS * medianResidual(rays, line));
+    if (std::none_of(rays.begin(), rays.end(), [&](const Ray& ray) { return line.residual(ray) > limit; }))
+      break;
     const Line refit = fitLine(rays, line, limit);
     if (refit.valid)
       line = refit;
@@ -90,26 +92,14 @@ Line fitRobustly(const std::vector<Ray>& rays)
 }
 }  // namespace
 
-PinholeCamera fitPinholeCamera(const DepthGrid& grid, double& error)
+PinholeCamera fitPinholeCamera(const PointView& points, double& error)
 {
-  std::size_t num_valid = 0;
-  for (const float z : grid.z)
-    num_valid += !std::isnan(z);
-  const std::size_t stride = num_valid / MAX_FIT_POINTS + 1;
-
   std::array<std::vector<Ray>, 2> rays;
-  std::size_t k = 0;
-  for (int v = 0; v < grid.height; ++v)
+  for (const int i : measuredLattice(points, ABOUT_FIT_POINTS))
   {
-    for (int u = 0; u < grid.width; ++u)
-    {
-      const auto i = static_cast<std::size_t>(grid.index(u, v));
-      if (std::isnan(grid.z[i]) || k++ % stride != 0)
-        continue;
-      const double z = static_cast<double>(grid.z[i]);
-      rays[0].push_back({static_cast<double>(u), static_cast<double>(grid.x[i]) / z});
-      rays[1].push_back({static_cast<double>(v), static_cast<double>(grid.y[i]) / z});
-    }
+    const Eigen::Vector3d p = points.point(i).cast<double>();
+    rays[0].push_back({static_cast<double>(i % points.width), p.x() / p.z()});
+    rays[1].push_back({static_cast<double>(i / points.width), p.y() / p.z()});
   }
   const Line horizontal = fitRobustly(rays[0]);
   const Line vertical = fitRobustly(rays[1]);

@@ -9,18 +9,14 @@
 #include <sstream>
 
 #include "bin_picking_perception/common/error.hpp"
-#include "bin_picking_perception/scene/grid_connectivity.hpp"
 
 namespace bin_picking
 {
 namespace
 {
-/// Larger values are fill values of drivers, not measurements; far above any depth in micrometres.
-constexpr float MAX_COORDINATE = 1e6f;
-
+/// Why no point is a measurement.
 struct PointCounts
 {
-  std::size_t valid = 0;
   std::size_t not_finite = 0;  ///< NaN, infinite or absurdly large
   std::size_t zero = 0;
   std::size_t behind = 0;  ///< z <= 0
@@ -53,34 +49,25 @@ void requireOrganized(const pcl::PointCloud<pcl::PointXYZ>& cloud)
   }
 }
 
-DepthGrid copyMeasured(const pcl::PointCloud<pcl::PointXYZ>& cloud, PointCounts& counts)
+PointCounts countFaults(const PointView& points)
 {
-  DepthGrid grid = makeGrid(static_cast<int>(cloud.width), static_cast<int>(cloud.height), PinholeCamera());
-  const auto measured = [](float value) { return std::abs(value) <= MAX_COORDINATE; };  // false for NaN
-  for (std::size_t i = 0; i < grid.size(); ++i)
+  PointCounts counts;
+  for (int i = 0; i < static_cast<int>(points.size()); ++i)
   {
-    const pcl::PointXYZ& p = cloud.points[i];
-    if (!(measured(p.x) && measured(p.y) && measured(p.z)))
+    const Eigen::Vector3f p = points.point(i);
+    if (!(p.array().abs() <= PointView::MAX_COORDINATE).all())  // NaN is not either
       ++counts.not_finite;
-    else if (p.x == 0 && p.y == 0 && p.z == 0)
+    else if (p.isZero(0))
       ++counts.zero;
-    else if (p.z <= 0)
-      ++counts.behind;
     else
-    {
-      ++counts.valid;
-      grid.x[i] = p.x;
-      grid.y[i] = p.y;
-      grid.z[i] = p.z;
-    }
+      ++counts.behind;
   }
-  return grid;
+  return counts;
 }
 
-void requireMeasurements(const PointCounts& counts)
+[[noreturn]] void failWithoutMeasurement(const PointView& points)
 {
-  if (counts.valid > 0)
-    return;
+  const PointCounts counts = countFaults(points);
   std::ostringstream m;
   if (counts.behind > 0)
   {
@@ -95,9 +82,11 @@ void requireMeasurements(const PointCounts& counts)
   fail(CloudFault::AllInvalid, m);
 }
 
-void requireMetres(const DepthGrid& grid, const InputParameters& parameters)
+void requireMeasurementsInMetres(const PointView& points, const InputParameters& parameters)
 {
-  const double median = medianDepth(grid);
+  const double median = medianDepth(points);
+  if (std::isnan(median))
+    failWithoutMeasurement(points);
   if (median <= parameters.max_plausible_depth)
     return;
   std::ostringstream m;
@@ -107,7 +96,7 @@ void requireMetres(const DepthGrid& grid, const InputParameters& parameters)
   fail(CloudFault::UnitSuspect, m);
 }
 
-void requirePinhole(const DepthGrid& grid, double error, const InputParameters& parameters)
+void requirePinhole(const PinholeCamera& camera, double error, const InputParameters& parameters)
 {
   std::ostringstream m;
   const char* const cure =
@@ -127,9 +116,9 @@ void requirePinhole(const DepthGrid& grid, double error, const InputParameters& 
       << "reordered after that." << cure;
     fail(CloudFault::NoProjection, m);
   }
-  if (grid.camera.fx <= 0 || grid.camera.fy <= 0)
+  if (camera.fx <= 0 || camera.fy <= 0)
   {
-    m << "The fitted focal lengths are " << grid.camera.fx << " and " << grid.camera.fy
+    m << "The fitted focal lengths are " << camera.fx << " and " << camera.fy
       << " pixels, but both must be positive: the picture is mirrored or turned against the point coordinates." << cure;
     fail(CloudFault::NoProjection, m);
   }
@@ -159,16 +148,25 @@ void InputParameters::visit(ParameterVisitor& v)
           empty_bin_points);
 }
 
-DepthGrid makeGrid(const pcl::PointCloud<pcl::PointXYZ>& cloud, const InputParameters& parameters)
+PointView viewOf(const pcl::PointCloud<pcl::PointXYZ>& cloud, const InputParameters& parameters)
 {
   requireOrganized(cloud);
-  PointCounts counts;
-  DepthGrid grid = copyMeasured(cloud, counts);
-  requireMeasurements(counts);
-  requireMetres(grid, parameters);
+  PointView points;
+  points.width = static_cast<int>(cloud.width);
+  points.height = static_cast<int>(cloud.height);
+  points.x = &cloud.points.front().x;
+  points.y = &cloud.points.front().y;
+  points.z = &cloud.points.front().z;
+  points.step = sizeof(pcl::PointXYZ) / sizeof(float);
+  requireMeasurementsInMetres(points, parameters);
   double error = 0;
-  grid.camera = fitPinholeCamera(grid, error);
-  requirePinhole(grid, error, parameters);
-  return grid;
+  points.camera = fitPinholeCamera(points, error);
+  requirePinhole(points.camera, error, parameters);
+  return points;
+}
+
+DepthGrid makeGrid(const pcl::PointCloud<pcl::PointXYZ>& cloud, const InputParameters& parameters)
+{
+  return copyMeasured(viewOf(cloud, parameters));
 }
 }  // namespace bin_picking

@@ -53,9 +53,8 @@ double planeVariance(const DepthGrid& grid, int u, int v)
 }
 }  // namespace
 
-double estimateDepthNoise(const DepthGrid& grid)
+double estimateDepthNoise(const DepthGrid& grid, const ConnectedRuns& runs)
 {
-  const ConnectedRuns runs = connectedRuns(grid, EdgeRule());
   const auto stride = static_cast<int>(std::sqrt(static_cast<double>(grid.size()) / MAX_WINDOWS)) + 1;
   std::vector<double> variances;
   for (int v = HALF_WINDOW; v + HALF_WINDOW < grid.height; v += stride)

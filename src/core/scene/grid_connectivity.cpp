@@ -5,92 +5,106 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../common/simd.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
+
 namespace bin_picking
 {
 namespace
 {
+constexpr std::size_t BAND = 32;  // rows per task
 /// Share of a jump by which the slopes on its two sides may differ from it.
 constexpr float SLOPE_TOLERANCE = 0.25f;
 
-class LinkTest
+struct LinkRule
 {
-public:
-  LinkTest(const DepthGrid& grid, const EdgeRule& rule)
-      : z_(grid.z.data()),
-        depth_(static_cast<float>(rule.depth)),
-        slope_per_depth_(static_cast<float>(rule.slope * grid.pitch(1.0)))
-  {}
+  float depth;
+  float slope_per_depth;
 
-  /// Whether pixels i and i + step lie on one surface.
-  /// \param before, after whether i - step and i + 2 step are pixels of the same row or column
-  bool linked(std::size_t i, std::size_t step, bool before, bool after) const
+  /// Whether the step from a to b stays on one surface.
+  bool isFlat(float a, float b) const
   {
-    const float a = z_[i];
-    const float b = z_[i + step];
+    return std::abs(b - a) <= depth + slope_per_depth * std::min(a, b);  // false for NaN
+  }
+  /// Whether it goes on at the slopes before and after it. Both must agree: a mixed pixel half-way down an edge has a
+  /// flat surface on one side of each of its two jumps.
+  bool continues(float before, float a, float b, float after) const
+  {
     const float jump = b - a;
-    if (std::abs(jump) <= depth_ + slope_per_depth_ * std::min(a, b))
-      return true;
-    return before && after && continues(jump, a - z_[i - step]) && continues(jump, z_[i + 2 * step] - b);
+    const float limit = depth + SLOPE_TOLERANCE * std::abs(jump);
+    return (std::abs(jump - (a - before)) <= limit) & (std::abs(jump - (after - b)) <= limit);
   }
-
-private:
-  // Both sides must agree: a mixed pixel half-way down an edge has a flat surface on one side of each of its two jumps.
-  bool continues(float jump, float slope) const
-  {
-    return std::abs(jump - slope) <= depth_ + SLOPE_TOLERANCE * std::abs(jump);
-  }
-
-  const float* z_;
-  float depth_;
-  float slope_per_depth_;
 };
 
-std::uint16_t nextRun(std::uint16_t run)
+/// links[k]: a[k] and b[k], neighbours in a row or column, lie on one surface.
+BIN_PICKING_SIMD void linkAll(const float* before, const float* a, const float* b, const float* after,
+                              std::size_t count, const LinkRule& given, std::uint8_t* links)
 {
-  return run == std::numeric_limits<std::uint16_t>::max() ? run : static_cast<std::uint16_t>(run + 1);
+  const LinkRule rule = given;
+  for (std::size_t k = 0; k < count; ++k)
+    links[k] = static_cast<std::uint8_t>(rule.isFlat(a[k], b[k]) | rule.continues(before[k], a[k], b[k], after[k]));
+}
+
+/// The same at the border of the picture, where there is no slope to go on with.
+void linkBorder(const float* a, const float* b, std::size_t count, const LinkRule& rule, std::uint8_t* links)
+{
+  for (std::size_t k = 0; k < count; ++k)
+    links[k] = rule.isFlat(a[k], b[k]);
+}
+
+/// One more where linked, else none.
+BIN_PICKING_SIMD void extendRuns(const std::uint8_t* links, const std::uint8_t* from, std::size_t count,
+                                 std::uint8_t* to)
+{
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const int next = from[k] + (from[k] < ConnectedRuns::LONGEST);
+    to[k] = static_cast<std::uint8_t>(links[k] != 0 ? next : 0);
+  }
+}
+
+void runsOfRow(const float* z, std::size_t width, const LinkRule& rule, std::uint8_t* left, std::uint8_t* right)
+{
+  const auto more = [](std::uint8_t run) { return static_cast<std::uint8_t>(run + (run < ConnectedRuns::LONGEST)); };
+  if (width < 2)
+    return;
+  linkBorder(z, z + 1, 1, rule, right);
+  if (width > 3)
+    linkAll(z, z + 1, z + 2, z + 3, width - 3, rule, right + 1);
+  linkBorder(z + width - 2, z + width - 1, 1, rule, right + width - 2);
+  for (std::size_t u = 0; u + 1 < width; ++u)
+    left[u + 1] = right[u] != 0 ? more(left[u]) : std::uint8_t{0};
+  for (std::size_t u = width - 1; u-- > 0;)
+    right[u] = right[u] != 0 ? more(right[u + 1]) : std::uint8_t{0};
 }
 }  // namespace
 
-ConnectedRuns connectedRuns(const DepthGrid& grid, const EdgeRule& rule)
+ConnectedRuns connectedRuns(const DepthGrid& grid, const EdgeRule& rule, const Executor& executor)
 {
-  const LinkTest test(grid, rule);
+  const LinkRule link{static_cast<float>(rule.depth), static_cast<float>(rule.slope * grid.pitch(1.0))};
   const auto w = static_cast<std::size_t>(grid.width);
   const auto h = static_cast<std::size_t>(grid.height);
   ConnectedRuns runs;
   for (auto* plane : {&runs.left, &runs.right, &runs.up, &runs.down})
     plane->assign(grid.size(), 0);
-  for (std::size_t v = 0; v < h; ++v)
-  {
-    for (std::size_t u = 0; u < w; ++u)
+  executor.forEach((h + BAND - 1) / BAND, [&](std::size_t band) {
+    for (std::size_t v = band * BAND; v < std::min(h, (band + 1) * BAND); ++v)
     {
-      const std::size_t i = v * w + u;
-      if (u + 1 < w && test.linked(i, 1, u > 0, u + 2 < w))
-        runs.left[i + 1] = nextRun(runs.left[i]);
-      if (v + 1 < h && test.linked(i, w, v > 0, v + 2 < h))
-        runs.up[i + w] = nextRun(runs.up[i]);
+      const float* z = grid.z.data() + v * w;
+      runsOfRow(z, w, link, &runs.left[v * w], &runs.right[v * w]);
+      if (v + 1 == h)
+        continue;
+      if (v > 0 && v + 2 < h)
+        linkAll(z - w, z, z + w, z + 2 * w, w, link, &runs.down[v * w]);
+      else
+        linkBorder(z, z + w, w, link, &runs.down[v * w]);
     }
-  }
-  for (std::size_t i = grid.size(); i-- > 0;)
-  {
-    if ((i + 1) % w != 0 && runs.left[i + 1] > 0)
-      runs.right[i] = nextRun(runs.right[i + 1]);
-    if (i + w < grid.size() && runs.up[i + w] > 0)
-      runs.down[i] = nextRun(runs.down[i + w]);
-  }
+  });
+  // `down` holds the links so far.
+  for (std::size_t v = 0; v + 1 < h; ++v)
+    extendRuns(&runs.down[v * w], &runs.up[v * w], w, &runs.up[(v + 1) * w]);
+  for (std::size_t v = h; v-- > 1;)
+    extendRuns(&runs.down[(v - 1) * w], &runs.down[v * w], w, &runs.down[(v - 1) * w]);
   return runs;
-}
-
-double medianDepth(const DepthGrid& grid)
-{
-  std::vector<float> depths;
-  depths.reserve(grid.size());
-  for (const float z : grid.z)
-    if (!std::isnan(z))
-      depths.push_back(z);
-  if (depths.empty())
-    return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return static_cast<double>(*middle);
 }
 }  // namespace bin_picking

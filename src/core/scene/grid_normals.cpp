@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "../common/simd.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/scene/grid_connectivity.hpp"
 #include "bin_picking_perception/scene/preprocessing.hpp"
@@ -26,14 +27,7 @@ constexpr double MIN_PLANE_PIXELS = 5;
 constexpr double MIN_SPREAD = 0.002;
 
 /// s, t, q, ss, st, tt, sq, tq, relative to a reference ray for accuracy.
-using Sums = Eigen::Array<double, 8, 1>;
-
-Sums momentsOf(double s, double t, double q)
-{
-  Sums sums;
-  sums << s, t, q, s * s, s * t, t * t, s * q, t * q;
-  return sums;
-}
+using Sums = std::array<double, 8>;
 
 /// Half the width of each row of a disc, for all disc sizes.
 class Discs
@@ -62,6 +56,46 @@ struct Reference
   double q = 0;
 };
 
+/// Replaces the moments of the pixels of a row by their running sums; what was not measured counts nothing.
+BIN_PICKING_SIMD void sumRow(const float* x, const float* y, const float* z, std::size_t count, const Reference& given,
+                             Sums* sums)
+{
+  const Reference reference = given;
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const bool measured = z[k] > 0;  // false for NaN
+    const double depth = static_cast<double>(z[k]);
+    const double s = measured ? static_cast<double>(x[k]) / depth - reference.s : 0;
+    const double t = measured ? static_cast<double>(y[k]) / depth - reference.t : 0;
+    const double q = measured ? 1 / depth - reference.q : 0;
+    sums[k + 1] = {s, t, q, s * s, s * t, t * t, s * q, t * q};
+  }
+  sums[0].fill(0);
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t m = 0; m < 8; ++m)
+      sums[k + 1][m] += sums[k][m];
+}
+
+/// Pixels of one row of a neighbourhood: those after `before` up to `last`, as places in the running sums.
+struct Span
+{
+  std::size_t before;
+  std::size_t last;
+};
+
+BIN_PICKING_SIMD void sumSpans(const Sums* running, const Span* spans, std::size_t count, Sums& result)
+{
+  double sums[8] = {};
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const double* last = running[spans[k].last].data();
+    const double* before = running[spans[k].before].data();
+    for (std::size_t m = 0; m < 8; ++m)
+      sums[m] += last[m] - before[m];
+  }
+  std::copy(sums, sums + 8, result.begin());
+}
+
 Eigen::Vector3f planeNormal(const Sums& sums, double n, const Reference& reference)
 {
   const double s = sums[0] / n;
@@ -85,9 +119,9 @@ Eigen::Vector3f planeNormal(const Sums& sums, double n, const Reference& referen
 class NormalEstimator
 {
 public:
-  NormalEstimator(const DepthGrid& grid, double radius)
+  NormalEstimator(const DepthGrid& grid, const ConnectedRuns& runs, double radius)
       : grid_(grid),
-        runs_(connectedRuns(grid, EdgeRule())),
+        runs_(runs),
         pixels_per_inverse_depth_(radius / grid.pitch(1.0)),
         max_window_(largestWindow()),
         discs_(max_window_)
@@ -96,14 +130,14 @@ public:
   /// Fills the normals of one tile.
   void estimate(int tile_u, int tile_v, std::vector<Eigen::Vector3f>& normals) const
   {
-    const int u0 = tile_u * TILE_WIDTH;
-    const int v0 = tile_v * TILE_HEIGHT;
-    const int u1 = std::min(grid_.width, u0 + TILE_WIDTH);
-    const int v1 = std::min(grid_.height, v0 + TILE_HEIGHT);
-    const RunningSums sums(*this, {std::max(0, u0 - max_window_), std::min(grid_.width, u1 + max_window_),
-                                   std::max(0, v0 - max_window_), std::min(grid_.height, v1 + max_window_)});
-    for (int v = v0; v < v1; ++v)
-      for (int u = u0; u < u1; ++u)
+    const Area tile{tile_u * TILE_WIDTH, std::min(grid_.width, (tile_u + 1) * TILE_WIDTH), tile_v * TILE_HEIGHT,
+                    std::min(grid_.height, (tile_v + 1) * TILE_HEIGHT)};
+    const int measured = firstMeasured(tile);
+    if (measured < 0)
+      return;
+    const RunningSums sums(grid_, around(tile), referenceAt(measured));
+    for (int v = tile.v_begin; v < tile.v_end; ++v)
+      for (int u = tile.u_begin; u < tile.u_end; ++u)
         if (const int i = grid_.index(u, v); grid_.valid(i))
           normals[static_cast<std::size_t>(i)] = normalAt(u, v, sums);
   }
@@ -115,65 +149,63 @@ private:
   };
 
   /// Sums over the pixels left of each pixel, per row of an area.
-  class RunningSums
+  struct RunningSums
   {
-  public:
-    RunningSums(const NormalEstimator& estimator, const Area& area)
-        : area_(area), stride_(area.u_end - area.u_begin + 1)
+    RunningSums(const DepthGrid& grid, const Area& the_area, const Reference& the_reference)
+        : reference(the_reference), area(the_area), stride(area.u_end - area.u_begin + 1)
     {
-      const DepthGrid& grid = estimator.grid_;
-      const PinholeCamera& c = grid.camera;
-      reference = {(area.u_begin - c.cx) / c.fx, (area.v_begin - c.cy) / c.fy, 0};
-      sums_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(area.v_end - area.v_begin));
-      bool has_depth = false;
+      sums.resize(static_cast<std::size_t>(stride) * static_cast<std::size_t>(area.v_end - area.v_begin));
       for (int v = area.v_begin; v < area.v_end; ++v)
       {
-        Sums sum = Sums::Zero();
-        at(area.u_begin, v) = sum;
-        for (int u = area.u_begin; u < area.u_end; ++u)
-        {
-          if (const int i = grid.index(u, v); grid.valid(i))
-          {
-            const Eigen::Vector3d p = grid.point(i).cast<double>();
-            const double q = 1 / p.z();
-            if (!has_depth)
-              reference.q = q;
-            has_depth = true;
-            sum += momentsOf(p.x() * q - reference.s, p.y() * q - reference.t, q - reference.q);
-          }
-          at(u + 1, v) = sum;
-        }
+        const auto i = static_cast<std::size_t>(grid.index(area.u_begin, v));
+        sumRow(&grid.x[i], &grid.y[i], &grid.z[i], static_cast<std::size_t>(stride - 1), reference,
+               &sums[place(area.u_begin, v)]);
       }
     }
-    const Sums& at(int u, int v) const { return sums_[offset(u, v)]; }
+    std::size_t place(int u, int v) const
+    {
+      return static_cast<std::size_t>((v - area.v_begin) * stride + u - area.u_begin);
+    }
 
     Reference reference;
-
-  private:
-    std::size_t offset(int u, int v) const
-    {
-      return static_cast<std::size_t>(v - area_.v_begin) * static_cast<std::size_t>(stride_) +
-             static_cast<std::size_t>(u - area_.u_begin);
-    }
-    Sums& at(int u, int v) { return sums_[offset(u, v)]; }
-
-    Area area_;
-    int stride_;
-    std::vector<Sums, Eigen::aligned_allocator<Sums>> sums_;
+    Area area;
+    int stride;
+    std::vector<Sums> sums;
   };
+
+  /// Index of a measured pixel in the area; -1 if there is none.
+  int firstMeasured(const Area& area) const
+  {
+    for (int v = area.v_begin; v < area.v_end; ++v)
+      for (int u = area.u_begin; u < area.u_end; ++u)
+        if (grid_.valid(grid_.index(u, v)))
+          return grid_.index(u, v);
+    return -1;
+  }
+
+  Reference referenceAt(int pixel) const
+  {
+    const Eigen::Vector3d p = grid_.point(pixel).cast<double>();
+    return {p.x() / p.z(), p.y() / p.z(), 1 / p.z()};
+  }
+
+  Area around(const Area& tile) const
+  {
+    return {std::max(0, tile.u_begin - max_window_), std::min(grid_.width, tile.u_end + max_window_),
+            std::max(0, tile.v_begin - max_window_), std::min(grid_.height, tile.v_end + max_window_)};
+  }
 
   int window(float z) const
   {
-    return std::clamp(static_cast<int>(std::lround(pixels_per_inverse_depth_ / static_cast<double>(z))), 1, MAX_WINDOW);
+    return std::clamp(static_cast<int>(pixels_per_inverse_depth_ / static_cast<double>(z) + 0.5), 1, MAX_WINDOW);
   }
 
   int largestWindow() const
   {
-    int largest = 1;
+    float nearest = std::numeric_limits<float>::infinity();
     for (const float z : grid_.z)
-      if (!std::isnan(z))
-        largest = std::max(largest, window(z));
-    return largest;
+      nearest = z < nearest ? z : nearest;
+    return window(nearest);
   }
 
   Eigen::Vector3f normalAt(int u, int v, const RunningSums& running) const
@@ -181,33 +213,38 @@ private:
     const auto i = static_cast<std::size_t>(grid_.index(u, v));
     const int w = window(grid_.z[i]);
     const int* half_width = discs_.rows(w);
-    Sums sums = Sums::Zero();
-    int n = 0;
     const int up = std::min<int>(w, runs_.up[i]);
     const int down = std::min<int>(w, runs_.down[i]);
+    std::array<Span, 2 * MAX_WINDOW + 1> spans;
+    std::size_t rows = 0;
+    int n = 0;
     for (int k = -up; k <= down; ++k)
     {
       const auto row = static_cast<std::size_t>(grid_.index(u, v + k));
       const int left = std::min<int>(half_width[std::abs(k)], runs_.left[row]);
       const int right = std::min<int>(half_width[std::abs(k)], runs_.right[row]);
-      sums += running.at(u + right + 1, v + k) - running.at(u - left, v + k);
+      const std::size_t place = running.place(u, v + k);
+      spans[rows++] = {place - static_cast<std::size_t>(left), place + static_cast<std::size_t>(right) + 1};
       n += left + right + 1;
     }
+    Sums sums;
+    sumSpans(running.sums.data(), spans.data(), rows, sums);
     return planeNormal(sums, n, running.reference);
   }
 
   const DepthGrid& grid_;
-  ConnectedRuns runs_;
+  const ConnectedRuns& runs_;
   double pixels_per_inverse_depth_;
   int max_window_;
   Discs discs_;
 };
 }  // namespace
 
-std::vector<Eigen::Vector3f> estimateGridNormals(const DepthGrid& grid, double radius, const Executor& executor)
+std::vector<Eigen::Vector3f> estimateGridNormals(const DepthGrid& grid, const ConnectedRuns& runs, double radius,
+                                                 const Executor& executor)
 {
   std::vector<Eigen::Vector3f> normals(grid.size(), Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
-  const NormalEstimator estimator(grid, radius);
+  const NormalEstimator estimator(grid, runs, radius);
   const int tiles_u = (grid.width + TILE_WIDTH - 1) / TILE_WIDTH;
   const int tiles_v = (grid.height + TILE_HEIGHT - 1) / TILE_HEIGHT;
   executor.forEach(static_cast<std::size_t>(tiles_u) * static_cast<std::size_t>(tiles_v), [&](std::size_t tile) {
@@ -215,5 +252,10 @@ std::vector<Eigen::Vector3f> estimateGridNormals(const DepthGrid& grid, double r
     estimator.estimate(k % tiles_u, k / tiles_u, normals);
   });
   return normals;
+}
+
+std::vector<Eigen::Vector3f> estimateGridNormals(const DepthGrid& grid, double radius, const Executor& executor)
+{
+  return estimateGridNormals(grid, connectedRuns(grid, EdgeRule(), executor), radius, executor);
 }
 }  // namespace bin_picking

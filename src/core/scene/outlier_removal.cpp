@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "../common/simd.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/scene/grid_connectivity.hpp"
 #include "bin_picking_perception/scene/preprocessing.hpp"
 
@@ -11,6 +13,16 @@ namespace bin_picking
 {
 namespace
 {
+constexpr int BAND = 16;  // rows per task
+
+/// Adds to count[k] whether depth other[k] is near depth own[k].
+BIN_PICKING_SIMD void countNear(const float* own, const float* other, int size, float distance, float slope_per_depth,
+                                float* count)
+{
+  for (int k = 0; k < size; ++k)
+    count[k] += std::abs(other[k] - own[k]) <= distance + slope_per_depth * own[k] ? 1.0f : 0.0f;
+}
+
 class NeighbourCount
 {
 public:
@@ -21,29 +33,35 @@ public:
         slope_per_depth_(static_cast<float>(EdgeRule().slope * grid.pitch(1.0)))
   {}
 
-  /// Share of the pixels around (u, v), as far as they lie in the picture, whose depth is near.
-  double share(int u, int v) const
+  /// Per pixel of a row, share of the pixels around it, as far as they lie in the picture, whose depth is near.
+  void shares(int v, std::vector<float>& share) const
   {
-    const int u0 = std::max(0, u - window_);
-    const int u1 = std::min(grid_.width - 1, u + window_);
     const int v0 = std::max(0, v - window_);
     const int v1 = std::min(grid_.height - 1, v + window_);
-    const float z = grid_.z[static_cast<std::size_t>(grid_.index(u, v))];
-    int near = -1;  // the pixel itself
+    share.assign(static_cast<std::size_t>(grid_.width), -1.0f);  // the pixel itself
     for (int row = v0; row <= v1; ++row)
     {
-      const float* depths = &grid_.z[static_cast<std::size_t>(grid_.index(0, row))];
-      for (int column = u0; column <= u1; ++column)
+      for (int step = -window_; step <= window_; ++step)
       {
-        const int steps = std::max(std::abs(row - v), std::abs(column - u));
-        near += std::abs(depths[column] - z) <= distance_ + slope_per_depth_ * z * static_cast<float>(steps);
+        const int begin = std::max(0, -step);
+        const int size = grid_.width - std::abs(step);
+        const auto steps = static_cast<float>(std::max(std::abs(row - v), std::abs(step)));
+        if (size > 0)
+          countNear(depths(begin, v), depths(begin + step, row), size, distance_, slope_per_depth_ * steps,
+                    &share[static_cast<std::size_t>(begin)]);
       }
     }
-    const int neighbours = (u1 - u0 + 1) * (v1 - v0 + 1) - 1;
-    return neighbours == 0 ? 0.0 : static_cast<double>(near) / neighbours;
+    for (int u = 0; u < grid_.width; ++u)
+    {
+      const int columns = std::min(grid_.width - 1, u + window_) - std::max(0, u - window_) + 1;
+      const int neighbours = columns * (v1 - v0 + 1) - 1;
+      share[static_cast<std::size_t>(u)] /= static_cast<float>(std::max(1, neighbours));
+    }
   }
 
 private:
+  const float* depths(int u, int v) const { return &grid_.z[static_cast<std::size_t>(grid_.index(u, v))]; }
+
   const DepthGrid& grid_;
   int window_;
   float distance_;
@@ -51,17 +69,27 @@ private:
 };
 }  // namespace
 
-void removeOutliers(DepthGrid& grid, const PreprocessingParameters& parameters)
+void removeOutliers(DepthGrid& grid, const PreprocessingParameters& parameters, const Executor& executor)
 {
   if (parameters.outlier_window < 1)
     return;
   const NeighbourCount count(grid, parameters.outlier_window, parameters.outlier_distance);
-  std::vector<int> outliers;  // removed together, so that the order of the pixels does not matter
-  for (int v = 0; v < grid.height; ++v)
-    for (int u = 0; u < grid.width; ++u)
-      if (const int i = grid.index(u, v); grid.valid(i) && count.share(u, v) < parameters.outlier_min_share)
-        outliers.push_back(i);
-  for (const int i : outliers)
-    grid.invalidate(i);
+  const auto min_share = static_cast<float>(parameters.outlier_min_share);
+  const auto num_bands = static_cast<std::size_t>((grid.height + BAND - 1) / BAND);
+  std::vector<std::vector<int>> outliers(num_bands);  // removed together, so that the order does not matter
+  executor.forEach(num_bands, [&](std::size_t band) {
+    std::vector<float> share;
+    const int begin = static_cast<int>(band) * BAND;
+    for (int v = begin; v < std::min(grid.height, begin + BAND); ++v)
+    {
+      count.shares(v, share);
+      for (int u = 0; u < grid.width; ++u)
+        if (share[static_cast<std::size_t>(u)] < min_share && grid.valid(grid.index(u, v)))
+          outliers[band].push_back(grid.index(u, v));
+    }
+  });
+  for (const auto& of_band : outliers)
+    for (const int i : of_band)
+      grid.invalidate(i);
 }
 }  // namespace bin_picking

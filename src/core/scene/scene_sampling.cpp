@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 
 #include "bin_picking_perception/scene/preprocessing.hpp"
 
@@ -67,8 +66,12 @@ public:
   int add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal)
   {
     const Eigen::Vector3f cell = point * scale_;
-    int& first = table_.firstSurface({static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y())),
-                                      static_cast<int>(std::floor(cell.z()))});
+    const Eigen::Vector3i voxel(static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y())),
+                                static_cast<int>(std::floor(cell.z())));
+    if (!last_first_ || voxel != last_voxel_)  // neighbouring pixels mostly fall into one voxel
+      last_first_ = &table_.firstSurface(voxel);
+    last_voxel_ = voxel;
+    int& first = *last_first_;
     const int s = first < 0 ? (first = append()) : choose(first, normal);
     Surface& surface = surfaces_[static_cast<std::size_t>(s)];
     surface.point += point;
@@ -114,6 +117,8 @@ private:
   }
 
   VoxelTable table_;
+  Eigen::Vector3i last_voxel_ = Eigen::Vector3i::Zero();
+  int* last_first_ = nullptr;
   std::vector<Surface> surfaces_;
   float scale_;
   float split_cosine_;
@@ -143,12 +148,15 @@ std::vector<int> nearestPixels(const DepthGrid& grid, const std::vector<int>& su
 {
   std::vector<int> nearest(surfaces.size(), -1);
   std::vector<float> best(surfaces.size(), std::numeric_limits<float>::infinity());
+  std::vector<Eigen::Vector3f> centroids(surfaces.size());
+  std::transform(surfaces.begin(), surfaces.end(), centroids.begin(),
+                 [](const Surface& surface) { return surface.point / surface.count; });
   for (std::size_t i = 0; i < surface_of.size(); ++i)
   {
     if (surface_of[i] < 0)
       continue;
     const auto s = static_cast<std::size_t>(surface_of[i]);
-    const float distance = (grid.point(static_cast<int>(i)) - surfaces[s].point / surfaces[s].count).squaredNorm();
+    const float distance = (grid.point(static_cast<int>(i)) - centroids[s]).squaredNorm();
     if (distance < best[s])
     {
       best[s] = distance;
@@ -169,17 +177,18 @@ SceneSamples sampleScene(const DepthGrid& grid, const std::vector<Eigen::Vector3
   const std::vector<Surface>& surfaces = sampler.surfaces();
   const std::vector<int> nearest = nearestPixels(grid, surface_of, surfaces);
 
-  std::vector<int> order(surfaces.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return nearest[static_cast<std::size_t>(a)] < nearest[static_cast<std::size_t>(b)]; });
   SceneSamples samples;
-  for (const int k : order)
+  for (auto* vectors : {&samples.points, &samples.normals})
+    vectors->reserve(surfaces.size());
+  samples.pixel.reserve(surfaces.size());
+  for (std::size_t i = 0; i < surface_of.size(); ++i)
   {
-    const Surface& surface = surfaces[static_cast<std::size_t>(k)];
+    if (surface_of[i] < 0 || nearest[static_cast<std::size_t>(surface_of[i])] != static_cast<int>(i))
+      continue;
+    const Surface& surface = surfaces[static_cast<std::size_t>(surface_of[i])];
     samples.points.push_back(surface.point / surface.count);
     samples.normals.push_back(surface.normal.normalized());
-    samples.pixel.push_back(nearest[static_cast<std::size_t>(k)]);
+    samples.pixel.push_back(static_cast<int>(i));
   }
   return samples;
 }

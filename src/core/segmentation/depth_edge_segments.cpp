@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/scene/grid_connectivity.hpp"
 #include "distance_map.hpp"
 
@@ -67,18 +68,19 @@ cv::Mat interior(const DepthGrid& grid, const ConnectedRuns& runs)
   return mask;
 }
 
-/// Pixels by falling distance, equal ones in the order of the picture.
-std::vector<int> growthOrder(const std::vector<int>& level)
+/// Measured pixels by falling distance, equal ones in the order of the picture.
+std::vector<int> growthOrder(const DepthGrid& grid, const std::vector<int>& level)
 {
   const int top = level.empty() ? 0 : *std::max_element(level.begin(), level.end());
   std::vector<int> begin(static_cast<std::size_t>(top) + 2, 0);
-  for (const int l : level)
-    ++begin[static_cast<std::size_t>(top - l) + 1];
+  for (std::size_t i = 0; i < level.size(); ++i)
+    begin[static_cast<std::size_t>(top - level[i]) + 1] += !std::isnan(grid.z[i]);
   for (std::size_t k = 1; k < begin.size(); ++k)
     begin[k] += begin[k - 1];
-  std::vector<int> order(level.size());
+  std::vector<int> order(static_cast<std::size_t>(begin.back()));
   for (std::size_t i = 0; i < level.size(); ++i)
-    order[static_cast<std::size_t>(begin[static_cast<std::size_t>(top - level[i])]++)] = static_cast<int>(i);
+    if (!std::isnan(grid.z[i]))
+      order[static_cast<std::size_t>(begin[static_cast<std::size_t>(top - level[i])]++)] = static_cast<int>(i);
   return order;
 }
 
@@ -128,11 +130,9 @@ private:
 std::vector<int> grow(const DepthGrid& grid, const ConnectedRuns& runs, const std::vector<int>& level, Basins& basins)
 {
   std::vector<int> basin_of(grid.size(), -1);
-  for (const int pixel : growthOrder(level))
+  for (const int pixel : growthOrder(grid, level))
   {
     const auto i = static_cast<std::size_t>(pixel);
-    if (std::isnan(grid.z[i]))
-      continue;
     const std::array<int, 4> neighbours = {runs.left[i] > 0 ? pixel - 1 : -1, runs.right[i] > 0 ? pixel + 1 : -1,
                                            runs.up[i] > 0 ? pixel - grid.width : -1,
                                            runs.down[i] > 0 ? pixel + grid.width : -1};
@@ -180,12 +180,13 @@ std::vector<std::int32_t> numbered(const DepthGrid& measured, std::vector<int> b
 }
 }  // namespace
 
-std::vector<std::int32_t> depthEdgeSegments(const DepthGrid& grid, double edge_depth, double neck)
+std::vector<std::int32_t> depthEdgeSegments(const DepthGrid& grid, double edge_depth, double neck,
+                                            const Executor& executor)
 {
   if (grid.size() == 0)
     return {};
   const DepthGrid filled = withoutSmallHoles(grid, edge_depth);
-  const ConnectedRuns runs = connectedRuns(filled, {edge_depth, EDGE_SLOPE});
+  const ConnectedRuns runs = connectedRuns(filled, {edge_depth, EDGE_SLOPE}, executor);
   const cv::Mat distance = distanceToBlack(interior(filled, runs));
   std::vector<int> level(grid.size());
   std::transform(distance.begin<float>(), distance.end<float>(), level.begin(),

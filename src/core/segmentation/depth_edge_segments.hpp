@@ -9,8 +9,11 @@
 
 namespace bin_picking
 {
+class Executor;
+
 /// Regions between depth discontinuities: a watershed over the distance to the nearest edge, whose basins join only
 /// where no depth edge lies between them and the passage is not narrower than `neck` times the narrower basin. Labels 1
 /// ... n, 0 where nothing was measured or only a speck.
-std::vector<std::int32_t> depthEdgeSegments(const DepthGrid& grid, double edge_depth, double neck);
+std::vector<std::int32_t> depthEdgeSegments(const DepthGrid& grid, double edge_depth, double neck,
+                                            const Executor& executor);
 }  // namespace bin_picking

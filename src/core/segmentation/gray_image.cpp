@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/scene/point_view.hpp"
 #include "bin_picking_perception/segmentation/segmentation.hpp"
 
 namespace bin_picking
@@ -18,12 +19,13 @@ struct DepthRange
   double far = 0;
 };
 
-/// 1st and 99th percentile, so that stray points do not stretch the range.
+/// 1st and 99th percentile of a lattice of pixels, so that stray points do not stretch the range.
 DepthRange dataRange(const DepthGrid& grid)
 {
+  constexpr int ABOUT = 10000;
   std::vector<float> depths;
-  depths.reserve(grid.size());
-  std::copy_if(grid.z.begin(), grid.z.end(), std::back_inserter(depths), [](float z) { return !std::isnan(z); });
+  for (const int i : measuredLattice(grid, ABOUT))
+    depths.push_back(grid.z[static_cast<std::size_t>(i)]);
   if (depths.empty())
     return {};
   const auto percentile = [&](std::size_t percent) {
@@ -79,14 +81,14 @@ std::vector<std::uint8_t> depthToGray(const DepthGrid& grid, const SegmentationP
 {
   const DepthRange range = effectiveRange(grid, parameters, bin);
   // A scene of one depth is as near as can be.
-  const double scale = range.far > range.near ? 254 / (range.far - range.near) : 0;
-  std::vector<std::uint8_t> gray(grid.size(), 0);
+  const auto scale = static_cast<float>(range.far > range.near ? 254 / (range.far - range.near) : 0);
+  const auto near = static_cast<float>(range.near);
+  std::vector<std::uint8_t> gray(grid.size());
   for (std::size_t i = 0; i < grid.size(); ++i)
-    if (!std::isnan(grid.z[i]))
-    {
-      const double level = 255 - scale * (static_cast<double>(grid.z[i]) - range.near);
-      gray[i] = static_cast<std::uint8_t>(std::lround(std::clamp(level, 1.0, 255.0)));
-    }
+  {
+    const float level = std::clamp(255 - scale * (grid.z[i] - near), 1.0f, 255.0f);
+    gray[i] = static_cast<std::uint8_t>(std::isnan(grid.z[i]) ? 0 : static_cast<int>(level + 0.5f));
+  }
   return gray;
 }
 }  // namespace bin_picking

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/model/view_templates.hpp"
 #include "depth_edge_segments.hpp"
 
@@ -25,14 +26,14 @@ std::vector<std::uint8_t> onWhite(std::vector<std::uint8_t> gray)
 }
 
 std::vector<std::int32_t> labelScene(const DepthGrid& grid, const std::vector<std::uint8_t>& gray,
-                                     const SegmentationParameters& parameters)
+                                     const SegmentationParameters& parameters, const Executor& executor)
 {
   switch (parameters.method)
   {
     case SegmentationMethod::Watershed:
       return watershedSegments(onWhite(gray), grid.width, grid.height, parameters);
     case SegmentationMethod::DepthEdges:
-      return depthEdgeSegments(grid, parameters.edge_depth, parameters.neck);
+      return depthEdgeSegments(grid, parameters.edge_depth, parameters.neck, executor);
     case SegmentationMethod::None:
       break;
   }
@@ -76,7 +77,7 @@ double contourPixels(const Segmentation& segmentation, int label, const Box& box
   return contourLength({mask.begin<std::uint8_t>(), mask.end<std::uint8_t>()}, mask.cols, mask.rows);
 }
 
-std::vector<Segment> measureSegments(const Segmentation& segmentation, const DepthGrid& grid)
+std::vector<Segment> measureSegments(const Segmentation& segmentation, const DepthGrid& grid, const Executor& executor)
 {
   const int num_labels =
       segmentation.labels.empty() ? 0 : *std::max_element(segmentation.labels.begin(), segmentation.labels.end());
@@ -99,13 +100,12 @@ std::vector<Segment> measureSegments(const Segmentation& segmentation, const Dep
                   std::max(boxes[k].v_max, v)};
     }
   }
-  for (std::size_t k = 0; k < segments.size(); ++k)
-  {
+  executor.forEach(segments.size(), [&](std::size_t k) {
     if (segments[k].pixels == 0)
-      continue;
+      return;
     segments[k].mean_depth /= segments[k].pixels;
     segments[k].contour = contourPixels(segmentation, segments[k].label, boxes[k]) * grid.pitch(segments[k].mean_depth);
-  }
+  });
   // A marker can lose all its pixels to the borders of its neighbours.
   segments.erase(
       std::remove_if(segments.begin(), segments.end(), [](const Segment& segment) { return segment.pixels == 0; }),
@@ -156,7 +156,8 @@ void SegmentationParameters::visit(ParameterVisitor& v)
           min_segment_area);
 }
 
-Segmentation segmentScene(const DepthGrid& grid, const SegmentationParameters& parameters, const Bin* bin)
+Segmentation segmentScene(const DepthGrid& grid, const SegmentationParameters& parameters, const Bin* bin,
+                          const Executor& executor)
 {
   Segmentation segmentation;
   segmentation.width = grid.width;
@@ -164,8 +165,8 @@ Segmentation segmentScene(const DepthGrid& grid, const SegmentationParameters& p
   segmentation.gray = depthToGray(grid, parameters, bin);
   if (grid.size() == 0)
     return segmentation;
-  segmentation.labels = labelScene(grid, segmentation.gray, parameters);
-  segmentation.segments = measureSegments(segmentation, grid);
+  segmentation.labels = labelScene(grid, segmentation.gray, parameters, executor);
+  segmentation.segments = measureSegments(segmentation, grid, executor);
   return segmentation;
 }
 }  // namespace bin_picking

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "quadric_fit.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "../common/simd.hpp"
+#include "bin_picking_perception/scene/curvature.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+constexpr std::size_t LANES = Neighbourhood::LANES;
+constexpr std::size_t NUM_SUMS = QuadricMoments::NUM_POWERS + QuadricMoments::NUM_RIGHT;
+constexpr std::size_t ORDER = 6;
+/// Smallest pivot per point of the normal equations; below, the points form a strip that fixes no quadric.
+constexpr double MIN_PIVOT = 1e-4;
+
+/// Places of the sums: first the powers of x and y, then z times those up to the second order.
+enum Sum : std::size_t
+{
+  N,
+  X,
+  Y,
+  XX,
+  XY,
+  YY,
+  XXX,
+  XXY,
+  XYY,
+  YYY,
+  XXXX,
+  XXXY,
+  XXYY,
+  XYYY,
+  YYYY,
+  Z_XX,
+  Z_XY,
+  Z_YY,
+  Z_X,
+  Z_Y,
+  Z
+};
+
+using LaneSums = std::array<std::array<float, LANES>, NUM_SUMS>;
+
+BIN_PICKING_SIMD void sumMoments(const Neighbourhood& found, const float* given_frame, const float* given_normal,
+                                 float min_cosine, std::array<double, NUM_SUMS>& result)
+{
+  // Local copies, because what lies behind a pointer might be one of the sums.
+  LaneSums sums{};
+  float frame[9];
+  float normal[3];
+  std::copy_n(given_frame, 9, frame);
+  std::copy_n(given_normal, 3, normal);
+  for (std::size_t k = 0; k < found.size; k += LANES)
+    for (std::size_t l = 0; l < LANES; ++l)
+    {
+      const std::size_t i = k + l;
+      const float cosine = normal[0] * found.nx[i] + normal[1] * found.ny[i] + normal[2] * found.nz[i];
+      const float weight = found.weight[i] * static_cast<float>(cosine >= min_cosine);
+      const float px = weight * found.x[i];
+      const float py = weight * found.y[i];
+      const float pz = weight * found.z[i];
+      const float x = frame[0] * px + frame[1] * py + frame[2] * pz;
+      const float y = frame[3] * px + frame[4] * py + frame[5] * pz;
+      const float z = frame[6] * px + frame[7] * py + frame[8] * pz;
+      const float xx = x * x;
+      const float xy = x * y;
+      const float yy = y * y;
+      sums[N][l] += weight;
+      sums[X][l] += x;
+      sums[Y][l] += y;
+      sums[XX][l] += xx;
+      sums[XY][l] += xy;
+      sums[YY][l] += yy;
+      sums[XXX][l] += xx * x;
+      sums[XXY][l] += xx * y;
+      sums[XYY][l] += x * yy;
+      sums[YYY][l] += yy * y;
+      sums[XXXX][l] += xx * xx;
+      sums[XXXY][l] += xx * xy;
+      sums[XXYY][l] += xx * yy;
+      sums[XYYY][l] += xy * yy;
+      sums[YYYY][l] += yy * yy;
+      sums[Z_XX][l] += z * xx;
+      sums[Z_XY][l] += z * xy;
+      sums[Z_YY][l] += z * yy;
+      sums[Z_X][l] += z * x;
+      sums[Z_Y][l] += z * y;
+      sums[Z][l] += z;
+    }
+  for (std::size_t half = LANES / 2; half > 0; half /= 2)
+    for (auto& lanes : sums)
+      for (std::size_t l = 0; l < half; ++l)
+        lanes[l] += lanes[l + half];
+  for (std::size_t k = 0; k < NUM_SUMS; ++k)
+    result[k] = static_cast<double>(sums[k][0]);
+}
+
+/// Solves m x = b for a symmetric positive definite m, of which the lower half is used, by L D L^T.
+/// \return whether each pivot is at least min_pivot
+bool solve(double (&m)[ORDER][ORDER], double (&b)[ORDER], double min_pivot)
+{
+  for (std::size_t j = 0; j < ORDER; ++j)
+  {
+    if (!(m[j][j] >= min_pivot))
+      return false;
+    for (std::size_t i = j + 1; i < ORDER; ++i)
+    {
+      const double factor = m[i][j] / m[j][j];
+      for (std::size_t k = j + 1; k <= i; ++k)
+        m[i][k] -= factor * m[k][j];
+      b[i] -= factor * b[j];
+    }
+  }
+  for (std::size_t j = ORDER; j-- > 0;)
+  {
+    for (std::size_t i = j + 1; i < ORDER; ++i)
+      b[j] -= m[i][j] * b[i];
+    b[j] /= m[j][j];
+  }
+  return true;
+}
+}  // namespace
+
+double QuadricMoments::meanCurvature() const
+{
+  const auto& s = sums_;
+  double m[ORDER][ORDER] = {{s[XXXX]},
+                            {s[XXXY], s[XXYY]},
+                            {s[XXYY], s[XYYY], s[YYYY]},
+                            {s[XXX], s[XXY], s[XYY], s[XX]},
+                            {s[XXY], s[XYY], s[YYY], s[XY], s[YY]},
+                            {s[XX], s[XY], s[YY], s[X], s[Y], s[N]}};
+  double q[ORDER] = {s[Z_XX], s[Z_XY], s[Z_YY], s[Z_X], s[Z_Y], s[Z]};
+  if (!solve(m, q, MIN_PIVOT * count()))
+    return std::numeric_limits<double>::quiet_NaN();
+  return quadricCurvature(q[0], q[1], q[2], q[3], q[4]).mean;
+}
+
+QuadricMoments quadricMoments(const Neighbourhood& found, const Eigen::Matrix3f& frame, const Eigen::Vector3f& normal,
+                              float min_cosine)
+{
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> rows = frame;
+  std::array<double, NUM_SUMS> sums;
+  sumMoments(found, rows.data(), normal.data(), min_cosine, sums);
+  return QuadricMoments(sums);
+}
+}  // namespace bin_picking
