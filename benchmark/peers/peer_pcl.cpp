@@ -24,6 +24,7 @@ constexpr float ANGLE_STEP = static_cast<float>(2 * M_PI / 31.0003);
 constexpr double ICP_STEP = 0.02;      // of the diameter
 constexpr double ICP_DISTANCE = 0.05;  // of the diameter
 constexpr std::size_t MIN_ICP_POINTS = 50;
+constexpr std::size_t MIN_SCENE_POINTS = 10;
 constexpr int MAX_SEARCHES = 10;  // of one scan: each costs as much as the first
 
 Cloud::Ptr toCloud(const OrientedPoints& points)
@@ -66,7 +67,7 @@ public:
     result.scene_points = static_cast<int>(left.size());
     const double start = cpuSeconds();
     const int wanted = std::min(scene.max_poses, MAX_SEARCHES);
-    while (static_cast<int>(result.poses.size()) < wanted && left.size() >= MIN_ICP_POINTS)
+    while (static_cast<int>(result.poses.size()) < wanted && left.size() >= MIN_SCENE_POINTS)
     {
       const std::optional<Pose> pose = match(toCloud(left), result.match_seconds);
       if (!pose)

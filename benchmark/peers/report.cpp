@@ -95,8 +95,8 @@ std::string lonePartsTable(const Study& study)
 /// One row per outcome; the exponents of growth below.
 std::string growthTables(const Trials& trials, const PartShapes& shapes, bool of_model)
 {
-  TextTable table(
-      {"program", "model points", "scene points", "training s", "training MB", "search ms", "search MB", "right"});
+  TextTable table({"program", "model points", "scene points", "training s", "training MB", "match ms", "ICP ms",
+                   "search MB", "right"});
   std::ostringstream exponents;
   for (std::size_t p = 0; p < programs().size(); ++p)
   {
@@ -204,7 +204,7 @@ std::string toMarkdown(const Study& study)
       << lonePartsTable(study);
   if (!study.model_growth.empty())
     out << "\n## Growth with the size of the model\n\nOne scan of " << study.model_growth.front().trial.part.name
-        << "; model and scene are sampled ever finer, ours too.\n\n"
+        << "; model and scene are sampled ever finer, ours too, coarser than\nit would do itself.\n\n"
         << growthTables(study.model_growth, study.shapes, true) << "\n## Growth with the size of the scene\n\n"
         << "One, two, four and more copies of the part in a scan, the same model. `ours` returns all of them, the\n"
         << "others one.\n\n"

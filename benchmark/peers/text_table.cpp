@@ -7,8 +7,18 @@
 #include <iomanip>
 #include <sstream>
 
+#include "bin_picking_perception/common/error.hpp"
+
 namespace bin_picking::peers
 {
+void TextTable::add(std::vector<std::string> row)
+{
+  if (row.size() != rows_.front().size())
+    throw Error("a row of " + std::to_string(row.size()) + " cells is added to a table of " +
+                std::to_string(rows_.front().size()) + " columns");
+  rows_.push_back(std::move(row));
+}
+
 std::string TextTable::text() const
 {
   std::vector<std::size_t> widths(rows_.front().size(), 3);

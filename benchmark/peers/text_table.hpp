@@ -14,7 +14,8 @@ class TextTable
 {
 public:
   explicit TextTable(std::vector<std::string> header) : rows_{std::move(header)} {}
-  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  /// \throws Error the row is not as long as the header
+  void add(std::vector<std::string> row);
   std::string text() const;
 
 private:

@@ -15,6 +15,7 @@
 #include "depth_check.hpp"
 #include "figures.hpp"
 #include "mesh_shapes.hpp"
+#include "text_table.hpp"
 
 namespace bin_picking::peers
 {
@@ -152,6 +153,19 @@ TEST(DepthCheck, KeepsTruePosesOnceAndNothingThatHangsInTheAir)
   std::sort(places.begin(), places.end());
   EXPECT_NEAR(places[0], 0, 1e-9);
   EXPECT_NEAR(places[1], 0.12, 1e-9);
+}
+
+TEST(TextTable, ColumnsAreAlignedAndRowsComplete)
+{
+  TextTable table({"program", "ms"});
+  table.add({"ours", "9.1"});
+  table.add({"a longer name", "1234"});
+  EXPECT_EQ(table.text(),
+            "| program       |   ms |\n"
+            "|---------------|-----:|\n"
+            "| ours          |  9.1 |\n"
+            "| a longer name | 1234 |\n");
+  EXPECT_THROW(table.add({"one cell"}), Error);
 }
 
 TEST(Figures, PowersAreRecovered)
