@@ -24,27 +24,53 @@ double depthTolerance(const PreparedScene& scene, const TrainedModel& model, con
 
 namespace
 {
+constexpr std::size_t COARSE_POINTS = 250;
 constexpr std::size_t ICP_POINTS = 750;
 constexpr std::size_t TEST_POINTS = 1500;
 constexpr double OUTLINE_NOISE = 3;  // standard deviations that are no step in depth
 
-IcpResult refine(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
-                 const IcpParameters& icp)
+Pose icpOnGrid(const Pose& T_camera_object, std::size_t points, const PreparedScene& scene, const TrainedModel& model,
+               const IcpParameters& icp)
 {
-  const double leaf = model.parameters.leaf;
+  return icpProjective(model.surface, facingPoints(model, T_camera_object, points), scene.grid, scene.normals,
+                       T_camera_object, model.parameters.leaf, icp)
+      .T_camera_object;
+}
+
+/// Half of the iterations, with few points: enough to see whether a pose is worth more.
+Pose refineRoughly(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model, IcpParameters icp)
+{
   switch (icp.method)
   {
     case IcpMethod::PointToPoint:
-      return icpPointToPoint(model.surface, pose.region->samples, pose.T_camera_object, icp.max_distance * leaf, icp);
+      return icpPointToPoint(model.surface, pose.region->samples, pose.T_camera_object,
+                             icp.max_distance * model.parameters.leaf, icp)
+          .T_camera_object;
     case IcpMethod::Projective:
-      return icpProjective(model.surface, facingPoints(model, pose.T_camera_object, ICP_POINTS), scene.grid,
-                           scene.normals, pose.T_camera_object, leaf, icp);
+      icp.max_iterations = (icp.max_iterations + 1) / 2;
+      return icpOnGrid(pose.T_camera_object, COARSE_POINTS, scene, model, icp);
     case IcpMethod::None:
       break;
   }
-  IcpResult unchanged;
-  unchanged.T_camera_object = pose.T_camera_object;
-  return unchanged;
+  return pose.T_camera_object;
+}
+
+/// The other half, with all points and a narrow gate.
+Pose polish(const Pose& T_camera_object, const PreparedScene& scene, const TrainedModel& model, IcpParameters icp)
+{
+  if (icp.method != IcpMethod::Projective)
+    return T_camera_object;
+  icp.max_iterations -= icp.max_iterations / 2;
+  icp.max_distance = icp.min_distance;
+  return icpOnGrid(T_camera_object, ICP_POINTS, scene, model, icp);
+}
+
+/// Neither finer refinement nor another turn would save this pose.
+bool isHopeless(const PoseEvidence& evidence, const VerificationParameters& parameters)
+{
+  constexpr double SHARE = 0.5;  // of what is asked for
+  return evidence.inlierShare(parameters.unmeasured_weight) < SHARE * parameters.min_inlier_share ||
+         evidence.visibleFraction() < SHARE * parameters.min_visible_fraction;
 }
 
 /// The first criterion that fails is the reason of the rejection.
@@ -71,19 +97,34 @@ void judge(Detection& detection, const PoseQuality& quality, const VerificationP
   require(detection, {"score", detection.score, parameters.min_score, false});
 }
 
-/// ICP; then, of the poses that look much the same, the one that the scene contradicts least.
-Pose settle(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
+/// Of the poses that look much the same, the one that the scene contradicts least, polished.
+Pose settle(const Pose& rough, const PreparedScene& scene, const TrainedModel& model,
             const DetectorParameters& parameters, double& turn_margin)
 {
-  const Pose refined = refine(pose, scene, model, parameters.icp).T_camera_object;
   if (!parameters.verification.enabled)
-    return refined;
-  const RivalChoice choice = chooseAmongRivals(model, refined, scene.grid, scene.surroundings,
+    return polish(rough, scene, model, parameters.icp);
+  const RivalChoice choice = chooseAmongRivals(model, rough, scene.grid, scene.surroundings,
                                                depthTolerance(scene, model, parameters.verification));
   turn_margin = choice.margin;
-  if (!choice.turned)
-    return refined;
-  return refine({choice.T_camera_object, pose.votes, pose.region}, scene, model, parameters.icp).T_camera_object;
+  return polish(choice.T_camera_object, scene, model, parameters.icp);
+}
+
+PoseEvidence evidenceAt(const Pose& T_camera_object, const SurfaceIndices& facing, const PreparedScene& scene,
+                        const TrainedModel& model, const VerificationParameters& parameters)
+{
+  return gatherEvidence(model, facing, T_camera_object, scene.grid, scene.surroundings, scene.normals,
+                        depthTolerance(scene, model, parameters), parameters);
+}
+
+/// What is known of a pose that was given up early: enough for its reason.
+void giveUp(Detection& detection, const PoseEvidence& evidence, const VerificationParameters& parameters)
+{
+  detection.visible_fraction = evidence.visibleFraction();
+  detection.rms = evidence.rms;
+  detection.matching_rate = evidence.matchingRate();
+  require(detection,
+          {"inlier_share", evidence.inlierShare(parameters.unmeasured_weight), parameters.min_inlier_share, false});
+  require(detection, {"visible_fraction", detection.visible_fraction, parameters.min_visible_fraction, false});
 }
 }  // namespace
 
@@ -98,11 +139,21 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
   Detection& detection = assessed.detection;
   detection.part = model.name;
   detection.votes = pose.votes;
-  const Pose T = settle(pose, scene, model, parameters, quality.turn_margin);
+  const Pose rough = refineRoughly(pose, scene, model, parameters.icp);
+  if (verification.enabled)
+  {
+    const PoseEvidence first = evidenceAt(rough, facingPoints(model, rough, COARSE_POINTS), scene, model, verification);
+    if (isHopeless(first, verification))
+    {
+      detection.T_camera_object = rough;
+      giveUp(detection, first, verification);
+      return assessed;
+    }
+  }
+  const Pose T = settle(rough, scene, model, parameters, quality.turn_margin);
   detection.T_camera_object = T;
   const SurfaceIndices visible = visiblePoints(model, T);
-  const PoseEvidence evidence = gatherEvidence(model, thinned(visible, TEST_POINTS), T, scene.grid, scene.surroundings,
-                                               scene.normals, near, verification);
+  const PoseEvidence evidence = evidenceAt(T, thinned(visible, TEST_POINTS), scene, model, verification);
   quality.inlier_share = evidence.inlierShare(verification.unmeasured_weight);
   quality.violation_share = evidence.violationShare();
   if (verification.enabled)

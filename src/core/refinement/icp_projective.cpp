@@ -95,36 +95,35 @@ int associate(const Scene& scene, const Eigen::Vector3f& point, const Eigen::Vec
   const Eigen::Vector3f d = scene.grid.point(i) - point;
   const float cosine = std::max(FLATTEST, -normal.dot(point) / point.norm());
   const float reach = gate + static_cast<float>(scene.grid.pitch(static_cast<double>(point.z()))) / cosine;
-  return std::abs(n.dot(d)) < gate && d.squaredNorm() < reach * reach ? i : -1;
+  return std::abs(normal.dot(d)) < gate && d.squaredNorm() < reach * reach ? i : -1;
 }
 
-NormalEquations accumulate(const OrientedPoints& model, const std::vector<std::uint32_t>& facing, std::size_t step,
-                           const Scene& scene, const Pose& T_camera_object, const Eigen::Vector3d& pivot, double radius,
-                           double gate)
+NormalEquations accumulate(const OrientedPoints& model, const std::vector<std::uint32_t>& facing, const Scene& scene,
+                           const Pose& T_camera_object, const Eigen::Vector3d& pivot, double radius, double gate)
 {
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   const Eigen::Vector3f origin = pivot.cast<float>();
   const auto inverse_radius = static_cast<float>(1 / radius);
   const auto inverse_gate = static_cast<float>(1 / gate);
   RowSums sums;
-  for (std::size_t k = 0; k < facing.size(); k += step)
+  for (const std::uint32_t k : facing)
   {
-    const Eigen::Vector3f point = T * model.points[facing[k]];
-    const Eigen::Vector3f normal = T.linear() * model.normals[facing[k]];
+    const Eigen::Vector3f point = T * model.points[k];
+    const Eigen::Vector3f normal = T.linear() * model.normals[k];
     if (point.z() <= 0 || normal.dot(point) >= 0)
       continue;
     const int i = associate(scene, point, normal, static_cast<float>(gate));
     if (i < 0)
       continue;
-    const Eigen::Vector3f& n = scene.normals[static_cast<std::size_t>(i)];
-    const float residual = n.dot(scene.grid.point(i) - point);
+    // Along the part's normal, which is exact; the measured one only says whether it is the same surface.
+    const float residual = normal.dot(scene.grid.point(i) - point);
     // Tukey's biweight at the gate: a neighbour's surface just inside it pulls little.
     const float share = residual * inverse_gate;
     const float root = 1 - share * share;
     Eigen::Matrix<float, 6, 1> row;
     const Eigen::Vector3f lever = (point - origin) * inverse_radius;
-    row << lever.y() * n.z() - lever.z() * n.y(), lever.z() * n.x() - lever.x() * n.z(),
-        lever.x() * n.y() - lever.y() * n.x(), n;
+    row << lever.y() * normal.z() - lever.z() * normal.y(), lever.z() * normal.x() - lever.x() * normal.z(),
+        lever.x() * normal.y() - lever.y() * normal.x(), normal;
     sums.add(row, residual, root * root);
   }
   return sums.equations();
@@ -163,7 +162,6 @@ IcpResult icpProjective(const OrientedPoints& model, const std::vector<std::uint
                         const IcpParameters& parameters)
 {
   constexpr int MIN_PAIRS = 12;
-  constexpr std::size_t COARSE_POINTS = 250;
   IcpResult result;
   result.T_camera_object = initial;
   result.rms = std::numeric_limits<double>::quiet_NaN();
@@ -175,16 +173,14 @@ IcpResult icpProjective(const OrientedPoints& model, const std::vector<std::uint
   const double radius = boundingBoxDiagonal(model.points) / 2;
   const Scene scene{grid, normals, static_cast<float>(std::cos(parameters.max_normal_angle))};
 
-  // Half of the iterations close the gate, with few points; the others polish with all.
+  // Half of the iterations close the gate.
   const double shrink = std::pow(parameters.min_distance / parameters.max_distance, 2.0 / parameters.max_iterations);
-  const std::size_t coarse_step = std::max<std::size_t>(1, facing.size() / COARSE_POINTS);
   double gate = parameters.max_distance * leaf;
   for (; result.iterations < parameters.max_iterations && !result.converged; ++result.iterations)
   {
     const bool gate_is_closed = gate <= parameters.min_distance * leaf * 1.001;
     const Eigen::Vector3d pivot = result.T_camera_object * center;
-    const NormalEquations equations =
-        accumulate(model, facing, gate_is_closed ? 1 : coarse_step, scene, result.T_camera_object, pivot, radius, gate);
+    const NormalEquations equations = accumulate(model, facing, scene, result.T_camera_object, pivot, radius, gate);
     result.correspondences = equations.count;
     if (equations.count < MIN_PAIRS)
       break;
