@@ -2,9 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "../src/core/matching/accumulator.hpp"
-#include "../src/core/matching/fast_quantizer.hpp"
+#include "../src/core/matching/pair_quantizer.hpp"
 #include "bin_picking_perception/matching/clustering.hpp"
 #include "bin_picking_perception/matching/voting.hpp"
 #include "kernels.hpp"
@@ -15,18 +16,16 @@ namespace
 {
 constexpr std::size_t REFERENCES = 100;
 
-/// A pair as voting meets it: its feature, and what it is looked up by.
-struct ScenePair
+/// A pair as voting looks it up.
+struct LookedUpPair
 {
-  float distance;
-  float cosines[3];  ///< of the angles of Equation 5
-  float y;           ///< of the second point in the local frame of the first
-  float z;
-  std::uint32_t key;
+  std::uint32_t geometric_key;
+  std::int16_t q1_bin;
+  std::int16_t q2_bin;
   std::uint16_t alpha;
 };
 
-void addPair(std::vector<ScenePair>& pairs, const OrientedPoints& scene, std::size_t r, std::size_t i,
+void addPair(std::vector<LookedUpPair>& pairs, const OrientedPoints& scene, std::size_t r, std::size_t i,
              const FeatureQuantizer& quantizer)
 {
   const PairFeature feature = pairFeature(scene.points[r], scene.normals[r], scene.curvature[r], scene.points[i],
@@ -35,21 +34,18 @@ void addPair(std::vector<ScenePair>& pairs, const OrientedPoints& scene, std::si
   if (geometric < 0 || std::isnan(feature.q1) || std::isnan(feature.q2))
     return;
   const Eigen::Vector3f local = alignToLocalFrame(scene.points[r], scene.normals[r]) * scene.points[i];
-  pairs.push_back({feature.distance,
-                   {std::cos(feature.angle_n1_d), std::cos(feature.angle_n2_d), std::cos(feature.angle_n1_n2)},
-                   local.y(),
-                   -local.z(),
-                   quantizer.key(geometric, quantizer.curvatureBin(feature.q1), quantizer.curvatureBin(feature.q2)),
+  pairs.push_back({static_cast<std::uint32_t>(geometric), static_cast<std::int16_t>(quantizer.curvatureBin(feature.q1)),
+                   static_cast<std::int16_t>(quantizer.curvatureBin(feature.q2)),
                    toTurnFraction(alphaInLocalFrame(local))});
 }
 
 /// Of reference points all over the scene, one vector each.
-std::vector<std::vector<ScenePair>> makePairs()
+std::vector<std::vector<LookedUpPair>> makePairs()
 {
   const Workbench& bench = workbench();
   const OrientedPoints& scene = bench.scene.samples;
   const double min_distance = bench.model->parameters.min_pair_distance;
-  std::vector<std::vector<ScenePair>> all;
+  std::vector<std::vector<LookedUpPair>> all;
   for (std::size_t r = 0; r < scene.size(); r += std::max<std::size_t>(1, scene.size() / REFERENCES))
   {
     all.emplace_back();
@@ -61,9 +57,9 @@ std::vector<std::vector<ScenePair>> makePairs()
   return all;
 }
 
-const std::vector<std::vector<ScenePair>>& pairsOfReferences()
+const std::vector<std::vector<LookedUpPair>>& pairsOfReferences()
 {
-  static const std::vector<std::vector<ScenePair>> pairs = makePairs();
+  static const std::vector<std::vector<LookedUpPair>> pairs = makePairs();
   return pairs;
 }
 
@@ -78,42 +74,51 @@ std::size_t countPairs()
 Accumulator emptyAccumulator()
 {
   const TrainedModel& model = *workbench().model;
-  return Accumulator(model.points.size(), static_cast<int>(std::lround(2 * M_PI / model.parameters.d_angle)));
+  return Accumulator(model.table.references().size(),
+                     static_cast<int>(std::lround(2 * M_PI / model.parameters.d_angle)));
 }
 
-std::uint64_t vote(const std::vector<ScenePair>& pairs, const FeatureTable& table, Accumulator& accumulator)
+std::uint64_t vote(const std::vector<LookedUpPair>& pairs, const FeatureTable& table, Accumulator& accumulator)
 {
   std::uint64_t votes = 0;
-  for (const ScenePair& pair : pairs)
+  for (const LookedUpPair& pair : pairs)
   {
-    const FeatureTable::Slot slot = table.find(pair.key);
-    accumulator.vote(table.entries() + slot.begin, slot.count, pair.alpha, 1);
-    votes += slot.count;
+    const FeatureTable::Run run = table.find(pair.geometric_key, pair.q1_bin, pair.q2_bin);
+    accumulator.vote(table.entries() + run.begin, table.entries() + run.end, pair.alpha, 1);
+    votes += run.size();
   }
   return votes;
 }
 
+/// Features of the pairs of a reference with all samples, near or not.
 void pairKeys(benchmark::State& state)
 {
-  const FastQuantizer quantizer(workbench().model->table.quantizer());
+  const Workbench& bench = workbench();
+  const OrientedPoints& scene = bench.scene.samples;
+  std::vector<int> order(scene.size());
+  std::iota(order.begin(), order.end(), 0);
+  const FlatPoints flat(scene, order);
+  const PairQuantizer quantizer(bench.model->table.quantizer(), bench.model->parameters.min_pair_distance,
+                                bench.model->diameter);
+  std::vector<std::uint32_t> keys(scene.size());
+  std::vector<std::uint16_t> alphas(scene.size());
   for (auto _ : state)
-    for (const auto& pairs : pairsOfReferences())
-      for (const ScenePair& p : pairs)
-      {
-        benchmark::DoNotOptimize(quantizer.geometricKey(p.distance, p.cosines[0], p.cosines[1], p.cosines[2]));
-        benchmark::DoNotOptimize(turnFraction(p.z, p.y));
-      }
-  countPer(state, "pair", countPairs());
+  {
+    quantizer.quantize(PairOrigin(scene.points[0], scene.normals[0]), flat, 0, scene.size(), keys.data(),
+                       alphas.data());
+    benchmark::ClobberMemory();
+  }
+  countPer(state, "pair", scene.size());
 }
-BENCHMARK(pairKeys)->Unit(benchmark::kMillisecond);
+BENCHMARK(pairKeys)->Unit(benchmark::kMicrosecond);
 
 void tableLookup(benchmark::State& state)
 {
   const FeatureTable& table = workbench().model->table;
   for (auto _ : state)
     for (const auto& pairs : pairsOfReferences())
-      for (const ScenePair& pair : pairs)
-        benchmark::DoNotOptimize(table.find(pair.key));
+      for (const LookedUpPair& pair : pairs)
+        benchmark::DoNotOptimize(table.find(pair.geometric_key, pair.q1_bin, pair.q2_bin));
   countPer(state, "pair", countPairs());
 }
 BENCHMARK(tableLookup)->Unit(benchmark::kMillisecond);
@@ -184,11 +189,11 @@ void tableBuild(benchmark::State& state)
   const Workbench& bench = workbench();
   const TrainedModel& model = *bench.model;
   const std::vector<std::int8_t> classes(model.points.size(), 0);
+  PairSelection all;
+  all.min_distance = model.parameters.min_pair_distance;
   std::size_t entries = 0;
   for (auto _ : state)
-    entries = FeatureTable(model.points, classes, {}, 0, model.table.quantizer(), model.parameters.min_pair_distance,
-                           bench.executor)
-                  .numEntries();
+    entries = FeatureTable(model.points, classes, all, model.table.quantizer(), bench.executor).numEntries();
   countPer(state, "pair", entries);
 }
 BENCHMARK(tableBuild)->Unit(benchmark::kMillisecond);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 #include <set>
 
@@ -98,9 +99,12 @@ TEST(FeatureTable, holdsExactlyThePairsOfBruteForce)
     std::vector<std::int8_t> classes(points.size());
     for (std::size_t i = 0; i < classes.size(); ++i)
       classes[i] = static_cast<std::int8_t>(i % 3 - 1);
-    const FeatureTable table(points, classes, {}, 0, q, 0.005, Executor(2));
+    PairSelection selection;
+    selection.min_distance = 0.005;
+    const FeatureTable table(points, classes, selection, q, Executor(2));
 
-    std::map<std::uint32_t, std::multiset<std::uint32_t>> expected;
+    using Feature = std::array<int, 3>;  // geometric key and both curvature bins
+    std::map<Feature, std::multiset<std::uint32_t>> expected;
     std::size_t num_pairs = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
       for (std::size_t j = 0; j < points.size(); ++j)
@@ -111,23 +115,54 @@ TEST(FeatureTable, holdsExactlyThePairsOfBruteForce)
           continue;
         const float alpha =
             alphaInLocalFrame(alignToLocalFrame(points.points[i], points.normals[i]) * points.points[j]);
-        const auto key = q.key(q.geometricKey(f), q.curvatureBin(f.q1), q.curvatureBin(f.q2));
-        expected[key].insert(
+        expected[{static_cast<int>(q.geometricKey(f)), q.curvatureBin(f.q1), q.curvatureBin(f.q2)}].insert(
             TableEntry::make(static_cast<std::uint32_t>(i), classes[i] * classes[j] == -1, toTurnFraction(alpha)).bits);
         ++num_pairs;
       }
     EXPECT_EQ(table.numEntries(), num_pairs);
     EXPECT_EQ(table.numKeys(), expected.size());
-    for (const auto& [key, entries] : expected)
+    const auto find = [&table](const Feature& f) { return table.find(static_cast<std::uint32_t>(f[0]), f[1], f[2]); };
+    for (const auto& [feature, entries] : expected)
     {
-      const auto slot = table.find(key);
+      const auto run = find(feature);
       std::multiset<std::uint32_t> found;
-      for (std::uint32_t i = 0; i < slot.count; ++i)
-        found.insert(table.entries()[slot.begin + i].bits);
+      for (std::uint32_t i = run.begin; i < run.end; ++i)
+        found.insert(table.entries()[i].bits);
       EXPECT_EQ(found, entries);
-      EXPECT_EQ(table.find(key + 1).count > 0, expected.count(key + 1) > 0);
+      const Feature next = {feature[0] + 1, feature[1], feature[2]};
+      EXPECT_EQ(find(next).size() > 0, expected.count(next) > 0);
     }
+    EXPECT_FALSE(table.hasCell(q.numGeometricKeys()));
   }
+}
+
+TEST(FeatureTable, curvaturesOfOneCellAreOneRun)
+{
+  const OrientedPoints points = cloudWithCurvature(150);
+  const std::vector<std::int8_t> none(points.size(), 0);
+  const FeatureTable with(points, none, {}, quantizerFor(0.003, 5), Executor(1));
+  const FeatureTable without(points, none, {}, quantizerFor(0.003, 1), Executor(1));
+  for (std::uint32_t key = 0; key < without.quantizer().numGeometricKeys(); ++key)
+  {
+    ASSERT_EQ(with.hasCell(key), without.hasCell(key));
+    if (!with.hasCell(key))
+      continue;
+    const std::uint32_t first = with.quantizer().key(with.cell(key), 0, 0);
+    EXPECT_EQ(with.run(with.rank(first), with.rank(first + 25)).size(), without.find(key, 0, 0).size());
+  }
+}
+
+TEST(FeatureTable, onlyTheGivenPointsAreReferences)
+{
+  const OrientedPoints points = cloudWithCurvature(60);
+  const std::vector<std::int8_t> none(points.size(), 0);
+  PairSelection selection;
+  selection.references = {3, 14, 59};
+  const FeatureTable table(points, none, selection, quantizerFor(0.003, 1), Executor(1));
+  EXPECT_EQ(table.numEntries(), 3u * 59u);
+  EXPECT_EQ(table.references(), selection.references);
+  for (std::size_t i = 0; i < table.numEntries(); ++i)
+    EXPECT_LT(table.entries()[i].reference(), 3u);
 }
 
 TEST(FeatureTable, storesOnlyPairsThatOneViewSees)
@@ -138,8 +173,11 @@ TEST(FeatureTable, storesOnlyPairsThatOneViewSees)
     visibility[i] = i % 2 ? 1u : 2u;
   const FeatureQuantizer q = quantizerFor(0.003, 1);
   const std::vector<std::int8_t> none(points.size(), 0);
-  const FeatureTable all(points, none, {}, 0, q, 0, Executor(1));
-  const FeatureTable half(points, none, visibility, 1, q, 0, Executor(1));
+  PairSelection seen_together;
+  seen_together.visibility = visibility;
+  seen_together.visibility_words = 1;
+  const FeatureTable all(points, none, {}, q, Executor(1));
+  const FeatureTable half(points, none, seen_together, q, Executor(1));
   EXPECT_EQ(all.numEntries(), 60u * 59u);
   EXPECT_EQ(half.numEntries(), 2u * 30u * 29u);
 }
@@ -157,10 +195,30 @@ TEST(FeatureTable, refusesWhatDoesNotFit)
 {
   OrientedPoints many = test::sphere(0.1, FeatureTable::MAX_REFERENCES + 1);
   const std::vector<std::int8_t> classes(many.size(), 0);
-  EXPECT_THROW(FeatureTable(many, classes, {}, 0, quantizerFor(0.003, 1), 0, Executor(1)), ParameterError);
+  EXPECT_THROW(FeatureTable(many, classes, {}, quantizerFor(0.003, 1), Executor(1)), ParameterError);
   const OrientedPoints few = cloudWithCurvature(10);
-  EXPECT_THROW(FeatureTable(few, std::vector<std::int8_t>(10, 0), {}, 0, quantizerFor(1e-5, 64), 0, Executor(1)),
+  EXPECT_THROW(FeatureTable(few, std::vector<std::int8_t>(10, 0), {}, quantizerFor(1e-5, 64), Executor(1)),
                ParameterError);
+}
+
+TEST(RankedBits, agreeWithASortedSet)
+{
+  std::mt19937 random(3);
+  for (const std::uint32_t size : {1u, 31u, 32u, 1000u})
+  {
+    RankedBits bits(size);
+    std::set<std::uint32_t> members;
+    for (std::uint32_t i = 0; i < size / 3 + 1; ++i)
+      members.insert(static_cast<std::uint32_t>(random()) % size);
+    for (const std::uint32_t member : members)
+      bits.insert(member);
+    EXPECT_EQ(bits.rankMembers(), members.size());
+    for (std::uint32_t i = 0; i <= size; ++i)
+    {
+      EXPECT_EQ(bits.contains(i), members.count(i) > 0);
+      EXPECT_EQ(bits.rank(i), std::distance(members.begin(), members.lower_bound(i)));
+    }
+  }
 }
 
 TEST(FeatureQuantizer, clampsAnglesAndCurvatureButNotDistance)

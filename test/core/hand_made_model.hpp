@@ -4,6 +4,7 @@
 
 #include "analytic_surfaces.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/model/reference_choice.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
 #include "bin_picking_perception/scene/surface_resampling.hpp"
 
@@ -11,12 +12,14 @@ namespace bin_picking
 {
 namespace test
 {
-/// A model made straight from surface points: no views, every pair stored.
-inline TrainedModel modelOf(const OrientedPoints& dense, double leaf, FeatureKind feature)
+/// A model made straight from surface points: no views, every pair stored (up to the symmetry).
+inline TrainedModel modelOf(const OrientedPoints& dense, double leaf, FeatureKind feature,
+                            const Symmetry& symmetry = Symmetry())
 {
   TrainedModel model;
   model.name = "test part";
   model.parameters.leaf = leaf;
+  model.parameters.matching_leaf = leaf;
   model.parameters.normal_radius = 1.3 * leaf;
   model.parameters.curvature_radius = 3.3 * leaf;
   model.parameters.min_pair_distance = leaf;
@@ -39,7 +42,11 @@ inline TrainedModel modelOf(const OrientedPoints& dense, double leaf, FeatureKin
   std::vector<std::int8_t> classes(model.points.size(), 0);
   for (std::size_t i = 0; i < classes.size() && feature == FeatureKind::CurPpf; ++i)
     classes[i] = static_cast<std::int8_t>(model.classes.classOf(model.points.curvature[i]));
-  model.table = FeatureTable(model.points, classes, {}, 0, quantizer, leaf, Executor(1));
+  PairSelection selection;
+  selection.min_distance = leaf;
+  selection.references = referencesUpToSymmetry(model.points, symmetry, 0.7 * leaf);
+  model.symmetry = symmetry;
+  model.table = FeatureTable(model.points, classes, selection, quantizer, Executor(1));
   return model;
 }
 

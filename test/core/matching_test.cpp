@@ -75,10 +75,12 @@ TEST(Voting, sameBitsForAnyNumberOfThreads)
 
 TEST(Voting, curvatureSavesVotes)
 {
-  const auto votesOf = [](FeatureKind feature) {
+  VotingParameters voting;
+  voting.max_votes = 0;
+  const auto votesOf = [&voting](FeatureKind feature) {
     const TrainedModel model = test::modelOf(test::lBlock(0.0015, 1), LEAF, feature);
     const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
-    return voteForPoses(model, scene, {}, chooseReferences(test::everyIndex(scene.size()), {}), {}, Deadline(),
+    return voteForPoses(model, scene, {}, chooseReferences(test::everyIndex(scene.size()), {}), voting, Deadline(),
                         Executor(2))
         .statistics.votes;
   };
@@ -108,8 +110,9 @@ TEST(Voting, unknownCurvatureMeetsEveryBin)
   const std::vector<std::uint8_t> unknown(scene.size(), 0);
   VotingParameters voting;
   voting.curvature_wildcard = true;
+  voting.max_votes = 0;
   const auto wild = voteForPoses(model, scene, unknown, {3, 33, 66}, voting, Deadline(), Executor(1));
-  const auto four_dimensional = voteForPoses(plain, scene, {}, {3, 33, 66}, {}, Deadline(), Executor(1));
+  const auto four_dimensional = voteForPoses(plain, scene, {}, {3, 33, 66}, voting, Deadline(), Executor(1));
   EXPECT_EQ(wild.statistics.votes, four_dimensional.statistics.votes);
 }
 
@@ -118,11 +121,74 @@ TEST(Voting, longBucketsAreSkipped)
   const TrainedModel model = test::modelOf(test::lBlock(0.0015, 1), LEAF, FeatureKind::Ppf);
   const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
   VotingParameters capped;
+  capped.max_votes = 0;
+  const auto all = voteForPoses(model, scene, {}, {3, 33}, capped, Deadline(), Executor(1)).statistics;
   capped.max_bucket = 50;
-  const auto all = voteForPoses(model, scene, {}, {3, 33}, {}, Deadline(), Executor(1)).statistics;
   const auto few = voteForPoses(model, scene, {}, {3, 33}, capped, Deadline(), Executor(1)).statistics;
   EXPECT_LT(few.votes, all.votes);
   EXPECT_LE(few.votes, few.pairs * 50);
+}
+
+TEST(Voting, budgetBoundsVotesAndThinsPairsEvenly)
+{
+  const TrainedModel model = test::modelOf(test::lBlock(0.0015, 1), LEAF, FeatureKind::Ppf);
+  const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
+  VotingParameters voting;
+  voting.max_votes = 0;
+  const auto all = voteForPoses(model, scene, {}, {3, 33}, voting, Deadline(), Executor(1)).statistics;
+  voting.max_votes = static_cast<int>(all.votes / 2 / 5);  // about a fifth for either reference
+  const auto thinned = voteForPoses(model, scene, {}, {3, 33}, voting, Deadline(), Executor(1));
+  EXPECT_EQ(thinned.statistics.pairs, all.pairs);
+  // Runs are of different lengths: a fifth of the pairs has a fifth of the votes to within their scatter.
+  EXPECT_LT(static_cast<double>(thinned.statistics.votes), 0.25 * static_cast<double>(all.votes));
+  EXPECT_GT(static_cast<double>(thinned.statistics.votes), 0.1 * static_cast<double>(all.votes));
+  ASSERT_FALSE(thinned.hypotheses.empty());
+  EXPECT_LT(test::rotationError(thinned.hypotheses.front().T_camera_object, Pose::Identity()), 0.3);
+}
+
+TEST(Voting, repeatedPairsCountOnce)
+{
+  const TrainedModel model = test::modelOf(test::lBlock(0.0015, 1), LEAF, FeatureKind::Ppf);
+  OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
+  VotingParameters voting;
+  voting.max_votes = 0;
+  const auto once = voteForPoses(model, scene, {}, {3, 33}, voting, Deadline(), Executor(1));
+  // Every point a second time, in the same place: nothing new is said.
+  const OrientedPoints copy = scene;
+  scene.points.insert(scene.points.end(), copy.points.begin(), copy.points.end());
+  scene.normals.insert(scene.normals.end(), copy.normals.begin(), copy.normals.end());
+  scene.curvature.insert(scene.curvature.end(), copy.curvature.begin(), copy.curvature.end());
+  const auto twice = voteForPoses(model, scene, {}, {3, 33}, voting, Deadline(), Executor(1));
+  EXPECT_EQ(twice.statistics.votes, once.statistics.votes);
+  EXPECT_GT(twice.statistics.pairs, once.statistics.pairs);
+  voting.skip_repeated = false;
+  const auto counted = voteForPoses(model, scene, {}, {3, 33}, voting, Deadline(), Executor(1));
+  EXPECT_GE(counted.statistics.votes, 2 * once.statistics.votes);
+}
+
+TEST(Voting, oneProfileOfASymmetricPartFindsItEverywhere)
+{
+  Symmetry revolution;
+  revolution.continuous = Symmetry::Axis{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()};
+  const OrientedPoints dense = test::torus(0.04, 0.015, 60000, 1);
+  const TrainedModel folded = test::modelOf(dense, LEAF, FeatureKind::Ppf, revolution);
+  const TrainedModel whole = test::modelOf(dense, LEAF, FeatureKind::Ppf);
+  EXPECT_LT(10 * folded.table.numEntries(), whole.table.numEntries());
+  std::mt19937 random(12);
+  for (int trial = 0; trial < 4; ++trial)
+  {
+    const Pose T = test::randomPose(random, 0.4);
+    const OrientedPoints scene = sceneOf(folded, test::torus(0.04, 0.015, 60000, 2), T);
+    const auto references = chooseReferences(test::everyIndex(scene.size()), {});
+    const auto votes = voteForPoses(folded, scene, {}, references, {}, Deadline(), Executor(2));
+    const auto clusters = clusterPoses(votes.hypotheses, folded, {});
+    ASSERT_FALSE(clusters.empty());
+    const Pose& found = clusters.front().T_camera_object;
+    // The torus is its own mirror image: its axis may point either way.
+    const double cosine = std::abs((found.linear() * Eigen::Vector3d::UnitZ()).dot(T.linear().col(2)));
+    EXPECT_GT(cosine, std::cos(0.15)) << "trial " << trial;
+    EXPECT_LT((found.translation() - T.translation()).norm(), LEAF) << "trial " << trial;
+  }
 }
 
 TEST(Voting, passedDeadlineIsPartialAndHasNoPoses)

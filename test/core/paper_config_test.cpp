@@ -78,12 +78,14 @@ TEST_P(PaperConfig, HoldsThePublishedConstants)
   const TrainingParameters& training = configuration.training;
   constexpr double MM = 1e-3;
   EXPECT_NEAR(training.leaf, paper.leaf * MM, 1e-12);
+  EXPECT_NEAR(training.matching_leaf, paper.leaf * MM, 1e-12);
   EXPECT_NEAR(training.d_dist, paper.d_dist * MM, 1e-12);
   EXPECT_NEAR(training.d_angle, 12 * M_PI / 180, 1e-12);
   EXPECT_NEAR(training.curvature_radius, paper.curvature_radius * MM, 1e-12);
   EXPECT_EQ(training.feature, FeatureKind::CurPpf);
   EXPECT_EQ(training.curvature_measure, paper.measure);
   EXPECT_FALSE(training.covisible_pairs);
+  EXPECT_FALSE(training.fold_symmetry);
   EXPECT_LT(training.min_pair_distance, 0.01 * paper.leaf * MM);
   EXPECT_GT(training.min_pair_distance, 0) << "0 would mean a distance derived from the leaf";
 
@@ -94,6 +96,8 @@ TEST_P(PaperConfig, HoldsThePublishedConstants)
 
   const DetectorParameters& detector = configuration.detector;
   EXPECT_NEAR(detector.voting.reference_share, 1.0 / 5, 1e-12);
+  EXPECT_EQ(detector.voting.max_votes, 0);
+  EXPECT_FALSE(detector.voting.skip_repeated);
   EXPECT_NEAR(detector.voting.weight, paper.weight, 1e-12);
   EXPECT_NEAR(detector.verification.match_distance, 5 * MM, 1e-12);
   EXPECT_EQ(detector.max_detections, paper.results);

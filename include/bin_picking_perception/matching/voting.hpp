@@ -16,12 +16,14 @@ class Executor;
 struct VotingParameters
 {
   double reference_share = 0.033;
-  int min_references = 12;
+  int min_references = 8;
   double max_pair_distance = 1.0;
   int weight = 1;
   double curvature_spread = 0.3;
-  bool curvature_wildcard = false;
+  bool curvature_wildcard = true;
   int max_bucket = 0;
+  int max_votes = 15000;
+  bool skip_repeated = true;
   int peaks_per_reference = 2;
   double min_peak_share = 0.7;
   bool sum_adjacent_angles = true;

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "bin_picking_perception/common/oriented_points.hpp"
 #include "bin_picking_perception/model/pair_feature.hpp"
+#include "bin_picking_perception/model/ranked_bits.hpp"
 
 namespace bin_picking
 {
@@ -28,15 +30,21 @@ struct FeatureQuantizer
   int curvatureBin(float q) const;
   /// Position within the bin, [0, 1).
   double curvatureFraction(float q) const;
-  /// Dense key of all six dimensions. Throws nothing; the product of all bins fits 32 bits (checked by the table).
+  /// One more than the largest geometric key.
+  std::uint32_t numGeometricKeys() const
+  {
+    const auto angles = static_cast<std::uint32_t>(angle_bins);
+    return static_cast<std::uint32_t>(distance_bins) * angles * angles * angles;
+  }
+  /// Dense key of all six dimensions. The product of all bins fits 32 bits (checked by the table).
   std::uint32_t key(std::int64_t geometric_key, int q1_bin, int q2_bin) const
   {
     return static_cast<std::uint32_t>((geometric_key * curvature_bins + q1_bin) * curvature_bins + q2_bin);
   }
 };
 
-/// A stored model pair in 32 bits: reference point (15), "one point is of low and the other of high curvature"
-/// (Equation 8; 1), alpha_m as a fraction of a turn (16).
+/// A stored model pair in 32 bits: reference point (15), as an index into FeatureTable::references(), "one point is of
+/// low and the other of high curvature" (Equation 8; 1), alpha_m as a fraction of a turn (16).
 struct TableEntry
 {
   std::uint32_t bits = 0;
@@ -53,51 +61,80 @@ struct TableEntry
 /// An angle as a 16-bit fraction of a turn, so that differences wrap without a branch.
 std::uint16_t toTurnFraction(float angle);
 
-/// The hash table of Figure 4: quantised feature -> model pairs. Flat arrays: open addressing for the keys, one array
-/// of entries behind. Immutable once built; safe to read from many threads.
+/// Which pairs a table holds.
+struct PairSelection
+{
+  double min_distance = 0;  ///< nearer pairs are not stored, metres
+  /// Per point the set of views that see it, as bits, `visibility_words` words each; only pairs that some view sees
+  /// together are stored. Empty: every pair.
+  std::vector<std::uint64_t> visibility;
+  std::size_t visibility_words = 0;
+  /// Points that are the first of a pair, ascending. Empty: every point.
+  std::vector<std::uint32_t> references;
+};
+
+/// The hash table of Figure 4: quantised feature -> model pairs. The hash is perfect and in two steps: from the four
+/// geometric dimensions to a cell, and from cell and curvatures to entries. Entries of one cell and q1 follow each
+/// other by q2, so that a range of curvatures is one run. Immutable once built; safe to read from many threads.
 class FeatureTable
 {
 public:
   static constexpr std::uint32_t MAX_REFERENCES = 1u << 15;
 
-  struct Slot
+  /// Entries [begin, end).
+  struct Run
   {
-    std::uint32_t key = 0;
     std::uint32_t begin = 0;
-    std::uint32_t count = 0;  ///< 0: empty slot
+    std::uint32_t end = 0;
+
+    std::uint32_t size() const { return end - begin; }
   };
 
   FeatureTable() = default;
 
-  /// All ordered pairs of distinct points (further apart than min_distance) that `pairs_allowed` admits.
+  /// All selected ordered pairs of distinct points.
   /// \param weighted_class per point: -1 low, +1 high, 0 neither (Equation 8)
-  /// \param visibility per point the set of views that see it, as bits, `words` words each; empty: every pair counts
   /// \throws ParameterError more than MAX_REFERENCES points, or more bins than 32 bits hold: a coarser leaf or step
   /// helps
   FeatureTable(const OrientedPoints& points, const std::vector<std::int8_t>& weighted_class,
-               const std::vector<std::uint64_t>& visibility, int words, const FeatureQuantizer& quantizer,
-               double min_distance, const Executor& executor);
+               const PairSelection& selection, const FeatureQuantizer& quantizer, const Executor& executor);
 
-  /// Entries stored under a key; count 0 if none.
-  Slot find(std::uint32_t key) const;
-  /// Hints the processor to fetch the slot of a key that is looked up soon.
-  void prefetch(std::uint32_t key) const { __builtin_prefetch(&slots_[home(key)]); }
+  /// False if no stored pair has these four dimensions: the answer for most pairs of a scene, from a bit map that stays
+  /// in the nearest cache. \param geometric_key at most FeatureQuantizer::numGeometricKeys(), which has none
+  bool hasCell(std::uint32_t geometric_key) const { return cells_.contains(geometric_key); }
+  /// \param geometric_key one that has a cell
+  std::uint32_t cell(std::uint32_t geometric_key) const { return cells_.rank(geometric_key); }
+  /// Stored features before that of a cell and curvatures; keys are FeatureQuantizer::key of the cell.
+  std::uint32_t rank(std::uint32_t key_of_cell) const { return features_.rank(key_of_cell); }
+  /// Entries of the features from one rank to before another.
+  Run run(std::uint32_t first_rank, std::uint32_t end_rank) const { return {starts_[first_rank], starts_[end_rank]}; }
+  /// Entries of one feature.
+  Run find(std::uint32_t geometric_key, int q1_bin, int q2_bin) const;
   const TableEntry* entries() const { return entries_.data(); }
 
+  /// The points that are the first of a stored pair: TableEntry::reference() is an index into them.
+  const std::vector<std::uint32_t>& references() const { return references_; }
   const FeatureQuantizer& quantizer() const { return quantizer_; }
   std::size_t numEntries() const { return entries_.size(); }
-  std::size_t numKeys() const { return num_keys_; }
-  std::size_t bytes() const { return entries_.size() * sizeof(TableEntry) + slots_.size() * sizeof(Slot); }
+  std::size_t numKeys() const { return starts_.size() - 1; }
+  std::size_t bytes() const
+  {
+    return entries_.size() * sizeof(TableEntry) + cells_.bytes() + features_.bytes() +
+           (starts_.size() + references_.size()) * sizeof(std::uint32_t);
+  }
 
 private:
   friend struct ModelFileAccess;
-  /// Fibonacci hashing; at least one slot stays empty, so that every search ends.
-  std::size_t home(std::uint32_t key) const { return (key * 2654435769u) >> shift_; }
+  using KeyedEntry = std::pair<std::uint32_t, TableEntry>;
+
+  void makeCells(std::vector<std::vector<KeyedEntry>>& rows);
+  void fill(std::vector<std::vector<KeyedEntry>>& rows);
 
   FeatureQuantizer quantizer_;
-  std::vector<Slot> slots_ = std::vector<Slot>(2);  ///< a power of two, at most half full
+  std::vector<std::uint32_t> references_;
+  RankedBits cells_ = RankedBits(FeatureQuantizer().numGeometricKeys());  ///< geometric keys that are stored
+  RankedBits features_;                                                   ///< keys of cells that are stored
+  std::vector<std::uint32_t> starts_ = std::vector<std::uint32_t>(1);     ///< per stored feature; the last is the end
   std::vector<TableEntry> entries_;
-  std::size_t num_keys_ = 0;
-  unsigned shift_ = 31;  ///< 32 - log2(number of slots)
 };
 }  // namespace bin_picking

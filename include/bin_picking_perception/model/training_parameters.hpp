@@ -13,19 +13,21 @@ namespace bin_picking
 struct TrainingParameters
 {
   double leaf = 0;             // 0: 4 % of the diameter, at most 6 mm or 1.5 %
+  double matching_leaf = 0;    // 0: 5 % of the diameter, at least the leaf
   double surface_spacing = 0;  // 0: half the leaf
   int seed = 1;
   double normal_radius = 0;  // 0: 1.3 leaf
   FeatureKind feature = FeatureKind::CurPpf;
   CurvatureMeasure curvature_measure = CurvatureMeasure::MeanCurvature;
   double curvature_radius = 0;           // 0: 3.3 leaf, as in the paper (10 mm at 3 mm)
-  double d_dist = 0;                     // 0: 0.6 leaf
+  double d_dist = 0;                     // 0: 0.6 matching_leaf
   double d_angle = 0.20943951023931953;  // 12 degrees
   double d_cur = 0;                      // 0: from the spread of the part's curvature
   double low_curvature_max = 0;          // both 0: from the histogram of the part's curvature
   double high_curvature_min = 0;
-  double min_pair_distance = 0;  // 0: 1.5 leaf
+  double min_pair_distance = 0;  // 0: 1.5 matching_leaf
   bool covisible_pairs = true;
+  bool fold_symmetry = true;
   int num_views = 128;
 
   void visit(ParameterVisitor& v);

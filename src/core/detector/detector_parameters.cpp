@@ -38,6 +38,8 @@ DetectorParameters paperPreset()
   p.voting.curvature_spread = 0;
   p.voting.curvature_wildcard = false;
   p.voting.max_bucket = 0;
+  p.voting.max_votes = 0;
+  p.voting.skip_repeated = false;
   p.voting.peaks_per_reference = 1;
   p.voting.sum_adjacent_angles = false;
   p.icp.method = IcpMethod::PointToPoint;
@@ -52,7 +54,7 @@ DetectorParameters accuratePreset()
   DetectorParameters p;
   p.voting.reference_share = 0.1;
   p.voting.min_references = 40;
-  p.voting.curvature_wildcard = true;
+  p.voting.max_votes = 60000;
   p.voting.peaks_per_reference = 3;
   p.clustering.max_clusters = 600;
   p.verification.max_refined = 240;

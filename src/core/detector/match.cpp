@@ -73,7 +73,8 @@ DetectionResult Detector::match(const OrientedPoints& scene, bool scene_is_part)
 
   SearchRegion region;
   static_cast<OrientedPoints&>(region.samples) = resampleSurface(
-      scene, {trained.leaf, trained.normal_radius, trained.curvature_measure, trained.curvature_radius}, executor_);
+      scene, {trained.matching_leaf, trained.normal_radius, trained.curvature_measure, trained.curvature_radius},
+      executor_);
   region.references.resize(region.samples.size());
   for (std::size_t i = 0; i < region.references.size(); ++i)
     region.references[i] = static_cast<int>(i);

@@ -42,7 +42,7 @@ void describeScene(PreparedScene& scene, const TrainedModel& model, const Detect
   clock.lap("noise");
   scene.normals = estimateGridNormals(scene.grid, scene.runs, trained.normal_radius, executor);
   clock.lap("normals");
-  scene.samples = sampleScene(scene.grid, scene.normals, trained.leaf, parameters.preprocessing);
+  scene.samples = sampleScene(scene.grid, scene.normals, trained.matching_leaf, parameters.preprocessing);
   clock.count("samples", static_cast<double>(scene.samples.size()));
   clock.lap("sampling");
   if (model.table.quantizer().curvature_bins > 1)

@@ -14,9 +14,13 @@ class TileIndex
 public:
   TileIndex(const std::vector<Eigen::Vector3f>& points, float tile);
 
-  /// Calls visit(index) for every point whose column may hold neighbours within `radius` of `center`, in a fixed order.
+  /// Point indices tile by tile: neighbours in the plane are few runs of it.
+  const std::vector<int>& order() const { return order_; }
+
+  /// Calls visit(begin, end) for the runs of order() whose tiles may hold neighbours within `radius` of `center`, in a
+  /// fixed order.
   template <typename Visit>
-  void forEachNear(const Eigen::Vector3f& center, float radius, const Visit& visit) const
+  void forEachRun(const Eigen::Vector3f& center, float radius, const Visit& visit) const
   {
     const int x_end = column(center.x() + radius, low_.x(), columns_);
     const int y_end = column(center.y() + radius, low_.y(), rows_);
@@ -25,8 +29,8 @@ public:
       const auto row = static_cast<std::size_t>(y * columns_);
       const auto begin = starts_[row + static_cast<std::size_t>(column(center.x() - radius, low_.x(), columns_))];
       const auto end = starts_[row + static_cast<std::size_t>(x_end) + 1];
-      for (std::size_t i = begin; i < end; ++i)
-        visit(order_[i]);
+      if (begin < end)
+        visit(begin, end);
     }
   }
 

@@ -3,15 +3,12 @@
 #include "bin_picking_perception/matching/voting.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <mutex>
 
-#include "accumulator.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
-#include "fast_quantizer.hpp"
-#include "tile_index.hpp"
+#include "vote_caster.hpp"
 
 namespace bin_picking
 {
@@ -32,6 +29,14 @@ void VotingParameters::visit(ParameterVisitor& v)
           curvature_wildcard);
   v.field({"max_bucket", "", "longer entries of the table are skipped (planes, cylinders); 0 = none", 0, 10000000},
           max_bucket);
+  v.field(
+      {"max_votes", "",
+       "about so many votes of a reference point at most: of its pairs every n-th counts, all over its neighbourhood. "
+       "Bounds the time of planar parts; 0 = all",
+       0, 100000000},
+      max_votes);
+  v.field({"skip_repeated", "", "count scene pairs of a reference point with equal feature and alpha once"},
+          skip_repeated);
   v.field({"peaks_per_reference", "", "most poses that one reference point may propose", 1, 20}, peaks_per_reference);
   v.field({"min_peak_share", "", "further poses of a reference point need this share of its highest vote", 0, 1},
           min_peak_share);
@@ -52,128 +57,6 @@ std::vector<int> chooseReferences(const std::vector<int>& candidates, const Voti
 
 namespace
 {
-constexpr std::size_t BATCH = 32;
-
-/// Curvature bins that a scene point is looked up in.
-struct BinRange
-{
-  std::uint8_t first = 0;
-  std::uint8_t last = 0;
-};
-
-struct Lookup
-{
-  std::uint32_t key;
-  std::uint16_t alpha_s;
-};
-
-/// What all references share.
-struct Scene
-{
-  const TrainedModel& model;
-  const OrientedPoints& points;
-  const VotingParameters& parameters;
-  std::vector<BinRange> bins;
-  FastQuantizer geometry;
-  TileIndex tiles;
-  float reach;
-};
-
-std::vector<BinRange> curvatureBins(const OrientedPoints& scene, const std::vector<std::uint8_t>& complete,
-                                    const FeatureQuantizer& quantizer, const VotingParameters& parameters)
-{
-  const int last = quantizer.curvature_bins - 1;
-  std::vector<BinRange> bins(scene.size());
-  for (std::size_t i = 0; i < scene.size() && last > 0; ++i)
-  {
-    const float q = scene.curvature[i];
-    const bool known = !std::isnan(q) && (complete.empty() || complete[i] || !parameters.curvature_wildcard);
-    if (!known)
-    {
-      bins[i] = {0, static_cast<std::uint8_t>(last)};
-      continue;
-    }
-    const int bin = quantizer.curvatureBin(q);
-    const double fraction = quantizer.curvatureFraction(q);
-    bins[i].first = static_cast<std::uint8_t>(std::max(0, bin - (fraction < parameters.curvature_spread)));
-    bins[i].last = static_cast<std::uint8_t>(std::min(last, bin + (fraction > 1 - parameters.curvature_spread)));
-  }
-  return bins;
-}
-
-/// Features of the pairs of one reference point, as keys.
-std::size_t collectLookups(const Scene& scene, std::size_t reference, std::vector<Lookup>& lookups)
-{
-  lookups.clear();
-  std::size_t pairs = 0;
-  const FeatureQuantizer& quantizer = scene.model.table.quantizer();
-  const Eigen::Vector3f& p1 = scene.points.points[reference];
-  const Eigen::Vector3f& n1 = scene.points.normals[reference];
-  const Eigen::Matrix3f R_local_camera = alignToLocalFrame(p1, n1).linear();
-  const Eigen::Vector3f to_y = R_local_camera.row(1);
-  const Eigen::Vector3f to_z = R_local_camera.row(2);
-  const float squared_reach = scene.reach * scene.reach;
-  const auto min_distance = static_cast<float>(scene.model.parameters.min_pair_distance);
-  const float squared_min = min_distance * min_distance;
-  scene.tiles.forEachNear(p1, scene.reach, [&](int index) {
-    const auto i = static_cast<std::size_t>(index);
-    const Eigen::Vector3f d = scene.points.points[i] - p1;
-    const float squared_distance = d.squaredNorm();
-    if (i == reference || squared_distance > squared_reach || squared_distance < squared_min)
-      return;
-    const Eigen::Vector3f& n2 = scene.points.normals[i];
-    const float distance = std::sqrt(squared_distance);
-    const std::int64_t geometric =
-        scene.geometry.geometricKey(distance, n1.dot(d) / distance, n2.dot(d) / distance, n1.dot(n2));
-    if (geometric < 0)
-      return;
-    ++pairs;
-    const std::uint16_t alpha_s = turnFraction(-to_z.dot(d), to_y.dot(d));  // alphaInLocalFrame
-    for (int q1 = scene.bins[reference].first; q1 <= scene.bins[reference].last; ++q1)
-      for (int q2 = scene.bins[i].first; q2 <= scene.bins[i].last; ++q2)
-        lookups.push_back({quantizer.key(geometric, q1, q2), alpha_s});
-  });
-  return pairs;
-}
-
-std::uint64_t castVotes(const Scene& scene, const std::vector<Lookup>& lookups, Accumulator& accumulator)
-{
-  const FeatureTable& table = scene.model.table;
-  const std::uint32_t longest =
-      scene.parameters.max_bucket > 0 ? static_cast<std::uint32_t>(scene.parameters.max_bucket) : ~0u;
-  const bool weighted = scene.model.parameters.feature == FeatureKind::CurPpf;
-  const std::uint32_t weight = weighted ? static_cast<std::uint32_t>(scene.parameters.weight) : 1;
-  std::uint64_t votes = 0;
-  // Both the slots and the entries behind them lie scattered in memory. They are fetched a batch ahead of their use.
-  struct Run
-  {
-    FeatureTable::Slot slot;
-    std::uint16_t alpha_s;
-  };
-  std::array<Run, BATCH> runs;
-  for (std::size_t begin = 0; begin < lookups.size(); begin += BATCH)
-  {
-    const std::size_t end = std::min(lookups.size(), begin + BATCH);
-    for (std::size_t i = end; i < std::min(lookups.size(), end + BATCH); ++i)
-      table.prefetch(lookups[i].key);
-    std::size_t num_runs = 0;
-    for (std::size_t i = begin; i < end; ++i)
-    {
-      const FeatureTable::Slot slot = table.find(lookups[i].key);
-      if (slot.count == 0 || slot.count > longest)
-        continue;
-      __builtin_prefetch(table.entries() + slot.begin);
-      runs[num_runs++] = {slot, lookups[i].alpha_s};
-    }
-    for (std::size_t i = 0; i < num_runs; ++i)
-    {
-      accumulator.vote(table.entries() + runs[i].slot.begin, runs[i].slot.count, runs[i].alpha_s, weight);
-      votes += runs[i].slot.count;
-    }
-  }
-  return votes;
-}
-
 bool samePose(const Pose& a, const Pose& b, const TrainedModel& model)
 {
   constexpr double SAME_ANGLE = 0.5;
@@ -182,7 +65,7 @@ bool samePose(const Pose& a, const Pose& b, const TrainedModel& model)
 }
 
 /// The strongest peaks that are different poses (Equation 6).
-std::vector<Hypothesis> extractPoses(const Scene& scene, std::size_t reference, const Accumulator& accumulator)
+std::vector<Hypothesis> extractPoses(const VotingScene& scene, std::size_t reference, Accumulator& accumulator)
 {
   const TrainedModel& model = scene.model;
   const Pose T_camera_local =
@@ -190,7 +73,7 @@ std::vector<Hypothesis> extractPoses(const Scene& scene, std::size_t reference, 
   std::vector<Hypothesis> hypotheses;
   for (const auto& peak : accumulator.peaks(scene.parameters.sum_adjacent_angles, scene.parameters.min_peak_share))
   {
-    const auto m = static_cast<std::size_t>(peak.model_point);
+    const std::uint32_t m = model.table.references()[peak.row];
     const Pose T_local_object = alignToLocalFrame(model.points.points[m], model.points.normals[m]).cast<double>();
     const Pose T_camera_object =
         T_camera_local * Eigen::AngleAxisd(static_cast<double>(peak.alpha), Eigen::Vector3d::UnitX()) * T_local_object;
@@ -199,7 +82,8 @@ std::vector<Hypothesis> extractPoses(const Scene& scene, std::size_t reference, 
     });
     if (known)
       continue;
-    hypotheses.push_back({T_camera_object, peak.votes, static_cast<int>(reference), peak.model_point});
+    hypotheses.push_back(
+        {T_camera_object, static_cast<double>(peak.votes), static_cast<int>(reference), static_cast<int>(m)});
     if (static_cast<int>(hypotheses.size()) == scene.parameters.peaks_per_reference)
       break;
   }
@@ -207,31 +91,30 @@ std::vector<Hypothesis> extractPoses(const Scene& scene, std::size_t reference, 
 }
 
 /// Accumulators are large; threads take one and give it back.
-class AccumulatorPool
+class CasterPool
 {
 public:
-  AccumulatorPool(std::size_t rows, int angles) : rows_(rows), angles_(angles) {}
+  explicit CasterPool(const VotingScene& scene) : scene_(scene) {}
 
-  std::unique_ptr<Accumulator> take()
+  std::unique_ptr<VoteCaster> take()
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (free_.empty())
-      return std::make_unique<Accumulator>(rows_, angles_);
-    auto accumulator = std::move(free_.back());
+      return std::make_unique<VoteCaster>(scene_);
+    auto caster = std::move(free_.back());
     free_.pop_back();
-    return accumulator;
+    return caster;
   }
-  void giveBack(std::unique_ptr<Accumulator> accumulator)
+  void giveBack(std::unique_ptr<VoteCaster> caster)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    free_.push_back(std::move(accumulator));
+    free_.push_back(std::move(caster));
   }
 
 private:
-  std::size_t rows_;
-  int angles_;
+  const VotingScene& scene_;
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Accumulator>> free_;
+  std::vector<std::unique_ptr<VoteCaster>> free_;
 };
 
 struct BlockResult
@@ -246,16 +129,8 @@ VotingResult voteForPoses(const TrainedModel& model, const OrientedPoints& point
                           const std::vector<std::uint8_t>& curvature_complete, const std::vector<int>& references,
                           const VotingParameters& parameters, const Deadline& deadline, const Executor& executor)
 {
-  const auto reach = static_cast<float>(parameters.max_pair_distance * model.diameter);
-  const Scene scene{model,
-                    points,
-                    parameters,
-                    curvatureBins(points, curvature_complete, model.table.quantizer(), parameters),
-                    FastQuantizer(model.table.quantizer()),
-                    TileIndex(points.points, reach / 4),
-                    reach};
-  const auto num_angles = static_cast<int>(std::lround(2 * M_PI / model.parameters.d_angle));
-  AccumulatorPool pool(model.points.size(), num_angles);
+  const VotingScene scene(model, points, curvature_complete, parameters);
+  CasterPool pool(scene);
 
   constexpr std::size_t BLOCK = 8;
   std::vector<BlockResult> blocks((references.size() + BLOCK - 1) / BLOCK);
@@ -264,19 +139,15 @@ VotingResult voteForPoses(const TrainedModel& model, const OrientedPoints& point
     result.skipped = deadline.passed();
     if (result.skipped)
       return;
-    auto accumulator = pool.take();
-    std::vector<Lookup> lookups;
+    auto caster = pool.take();
     for (std::size_t r = b * BLOCK; r < std::min(references.size(), (b + 1) * BLOCK); ++r)
     {
       const auto reference = static_cast<std::size_t>(references[r]);
-      accumulator->clear();
-      result.statistics.pairs += collectLookups(scene, reference, lookups);
-      result.statistics.votes += castVotes(scene, lookups, *accumulator);
-      ++result.statistics.references;
-      const auto poses = extractPoses(scene, reference, *accumulator);
+      caster->cast(reference, result.statistics);
+      const auto poses = extractPoses(scene, reference, caster->accumulator());
       result.hypotheses.insert(result.hypotheses.end(), poses.begin(), poses.end());
     }
-    pool.giveBack(std::move(accumulator));
+    pool.giveBack(std::move(caster));
   });
 
   VotingResult result;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "bin_picking_perception/common/error.hpp"
@@ -44,18 +45,15 @@ std::uint16_t toTurnFraction(float angle)
 
 namespace
 {
-struct KeyedEntry
-{
-  std::uint32_t key;
-  TableEntry entry;
-};
+using KeyedEntry = std::pair<std::uint32_t, TableEntry>;
 
-bool covisible(const std::vector<std::uint64_t>& visibility, std::size_t words, std::size_t i, std::size_t j)
+bool covisible(const PairSelection& selection, std::size_t i, std::size_t j)
 {
-  if (visibility.empty())
+  const std::size_t words = selection.visibility_words;
+  if (selection.visibility.empty())
     return true;
   for (std::size_t w = 0; w < words; ++w)
-    if (visibility[i * words + w] & visibility[j * words + w])
+    if (selection.visibility[i * words + w] & selection.visibility[j * words + w])
       return true;
   return false;
 }
@@ -77,22 +75,22 @@ void checkSize(const OrientedPoints& points, const FeatureQuantizer& q)
                          " different features, but at most 4294967295 can be told apart; choose coarser steps");
 }
 
-/// All pairs whose first point is `i`, in order of the second.
-std::vector<KeyedEntry> pairsOf(std::size_t i, const OrientedPoints& points,
-                                const std::vector<std::int8_t>& weighted_class,
-                                const std::vector<std::uint64_t>& visibility, std::size_t words,
-                                const FeatureQuantizer& quantizer, float min_distance)
+/// All pairs whose first point is `i`, in order of the second. \param row index of `i` among the references
+std::vector<KeyedEntry> pairsOf(std::size_t i, std::uint32_t row, const OrientedPoints& points,
+                                const std::vector<std::int8_t>& weighted_class, const PairSelection& selection,
+                                const FeatureQuantizer& quantizer)
 {
   std::vector<KeyedEntry> pairs;
   if (!hasFeature(points, i, quantizer))
     return pairs;
+  const auto min_distance = static_cast<float>(selection.min_distance);
   const Eigen::Isometry3f T_local_model = alignToLocalFrame(points.points[i], points.normals[i]);
   const bool with_curvature = quantizer.curvature_bins > 1;
   const float q1 = with_curvature ? points.curvature[i] : 0;
   const int q1_bin = quantizer.curvatureBin(q1);
   for (std::size_t j = 0; j < points.size(); ++j)
   {
-    if (j == i || !hasFeature(points, j, quantizer) || !covisible(visibility, words, i, j))
+    if (j == i || !hasFeature(points, j, quantizer) || !covisible(selection, i, j))
       continue;
     const float q2 = with_curvature ? points.curvature[j] : 0;
     const PairFeature f = pairFeature(points.points[i], points.normals[i], q1, points.points[j], points.normals[j], q2);
@@ -100,86 +98,73 @@ std::vector<KeyedEntry> pairsOf(std::size_t i, const OrientedPoints& points,
     if (geometric < 0)
       continue;
     const bool weighted = weighted_class[i] * weighted_class[j] == -1;  // Equation 8: one high, the other low
-    pairs.push_back({quantizer.key(geometric, q1_bin, quantizer.curvatureBin(q2)),
-                     TableEntry::make(static_cast<std::uint32_t>(i), weighted,
-                                      toTurnFraction(alphaInLocalFrame(T_local_model * points.points[j])))});
+    const std::uint16_t alpha = toTurnFraction(alphaInLocalFrame(T_local_model * points.points[j]));
+    pairs.emplace_back(quantizer.key(geometric, q1_bin, quantizer.curvatureBin(q2)),
+                       TableEntry::make(row, weighted, alpha));
   }
   return pairs;
 }
 }  // namespace
 
 FeatureTable::FeatureTable(const OrientedPoints& points, const std::vector<std::int8_t>& weighted_class,
-                           const std::vector<std::uint64_t>& visibility, int words, const FeatureQuantizer& quantizer,
-                           double min_distance, const Executor& executor)
-    : quantizer_(quantizer)
+                           const PairSelection& selection, const FeatureQuantizer& quantizer, const Executor& executor)
+    : quantizer_(quantizer), references_(selection.references)
 {
   checkSize(points, quantizer);
-  std::vector<std::vector<KeyedEntry>> rows(points.size());
-  executor.forEach(points.size(), [&](std::size_t i) {
-    rows[i] = pairsOf(i, points, weighted_class, visibility, static_cast<std::size_t>(words), quantizer,
-                      static_cast<float>(min_distance));
-  });
-
-  // Count per key in the hash table, then lay the runs out one behind the other and fill them in order of the
-  // reference.
-  std::size_t total = 0;
-  for (const auto& row : rows)
-    total += row.size();
-  unsigned bits = 4;
-  const auto place = [this](std::uint32_t key) -> Slot& {
-    std::size_t position = home(key);
-    while (slots_[position].count != 0 && slots_[position].key != key)
-      position = (position + 1) & (slots_.size() - 1);
-    return slots_[position];
-  };
-  const auto resize = [&](unsigned new_bits) {
-    std::vector<Slot> old = std::move(slots_);
-    bits = new_bits;
-    shift_ = 32 - bits;
-    slots_.assign(std::size_t{1} << bits, Slot{});
-    for (const auto& slot : old)
-      if (slot.count != 0)
-        place(slot.key) = slot;
-  };
-  resize(bits);
-  for (const auto& row : rows)
-    for (const auto& pair : row)
-    {
-      Slot& slot = place(pair.key);
-      num_keys_ += slot.count == 0;
-      slot.key = pair.key;
-      ++slot.count;
-      if (2 * num_keys_ > slots_.size())
-        resize(bits + 1);
-    }
-  std::uint32_t begin = 0;
-  for (auto& slot : slots_)
+  if (references_.empty())
   {
-    slot.begin = begin;
-    begin += slot.count;
+    references_.resize(points.size());
+    std::iota(references_.begin(), references_.end(), 0u);
   }
-  entries_.resize(total);
-  std::vector<std::uint32_t> filled(slots_.size(), 0);
+  std::vector<std::vector<KeyedEntry>> rows(references_.size());
+  executor.forEach(rows.size(), [&](std::size_t r) {
+    rows[r] = pairsOf(references_[r], static_cast<std::uint32_t>(r), points, weighted_class, selection, quantizer);
+  });
+  makeCells(rows);
+  fill(rows);
+}
+
+/// Replaces the geometric part of the keys by the cell.
+void FeatureTable::makeCells(std::vector<std::vector<KeyedEntry>>& rows)
+{
+  const auto curvatures = static_cast<std::uint32_t>(quantizer_.curvature_bins * quantizer_.curvature_bins);
+  cells_ = RankedBits(quantizer_.numGeometricKeys());
+  for (const auto& row : rows)
+    for (const KeyedEntry& pair : row)
+      cells_.insert(pair.first / curvatures);
+  features_ = RankedBits(static_cast<std::size_t>(cells_.rankMembers()) * curvatures);
   for (auto& row : rows)
-  {
-    for (const auto& pair : row)
+    for (KeyedEntry& pair : row)
     {
-      const Slot& slot = place(pair.key);
-      entries_[slot.begin + filled[static_cast<std::size_t>(&slot - slots_.data())]++] = pair.entry;
+      pair.first = cells_.rank(pair.first / curvatures) * curvatures + pair.first % curvatures;
+      features_.insert(pair.first);
     }
-    std::vector<KeyedEntry>().swap(row);
+}
+
+/// Counting sort: count the entries of each feature, and put them in order of the reference.
+void FeatureTable::fill(std::vector<std::vector<KeyedEntry>>& rows)
+{
+  starts_.assign(features_.rankMembers() + 1, 0);
+  for (const auto& row : rows)
+    for (const KeyedEntry& pair : row)
+      ++starts_[rank(pair.first)];
+  std::uint32_t end = 0;
+  for (std::uint32_t& start : starts_)
+    start = (end += start);
+  entries_.resize(end);
+  for (auto row = rows.rbegin(); row != rows.rend(); ++row)
+  {
+    for (auto pair = row->rbegin(); pair != row->rend(); ++pair)
+      entries_[--starts_[rank(pair->first)]] = pair->second;
+    std::vector<KeyedEntry>().swap(*row);
   }
 }
 
-FeatureTable::Slot FeatureTable::find(std::uint32_t key) const
+FeatureTable::Run FeatureTable::find(std::uint32_t geometric_key, int q1_bin, int q2_bin) const
 {
-  std::size_t position = home(key);
-  while (slots_[position].count != 0)
-  {
-    if (slots_[position].key == key)
-      return slots_[position];
-    position = (position + 1) & (slots_.size() - 1);
-  }
-  return {};
+  if (!hasCell(geometric_key))
+    return {};
+  const std::uint32_t key = quantizer_.key(cell(geometric_key), q1_bin, q2_bin);
+  return run(rank(key), rank(key + 1));
 }
 }  // namespace bin_picking

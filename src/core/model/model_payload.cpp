@@ -3,6 +3,7 @@
 #include "model_payload.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "payload_shape.hpp"
 
@@ -93,20 +94,22 @@ struct ModelFileAccess
   static void write(BinaryWriter& out, const FeatureTable& table)
   {
     writeQuantizer(out, table.quantizer_);
-    out.array(table.slots_);
+    out.array(table.references_);
+    out.array(table.cells_.words_);
+    out.array(table.features_.words_);
+    out.array(table.starts_);
     out.array(table.entries_);
-    out.value(static_cast<std::uint64_t>(table.num_keys_));
-    out.value(static_cast<std::uint32_t>(table.shift_));
   }
 
   static FeatureTable read(BinaryReader& in, std::size_t num_points)
   {
     FeatureTable table;
     table.quantizer_ = readQuantizer(in);
-    table.slots_ = in.array<FeatureTable::Slot>();
+    table.references_ = in.array<std::uint32_t>();
+    table.cells_.words_ = in.array<RankedBits::Word>();
+    table.features_.words_ = in.array<RankedBits::Word>();
+    table.starts_ = in.array<std::uint32_t>();
     table.entries_ = in.array<TableEntry>();
-    table.num_keys_ = static_cast<std::size_t>(in.value<std::uint64_t>());
-    table.shift_ = in.value<std::uint32_t>();
     check(table, num_points);
     return table;
   }
@@ -140,22 +143,36 @@ struct ModelFileAccess
   }
 
 private:
-  /// A search in the table must end and stay within its arrays.
+  /// \return the number of members
+  static std::uint32_t checkRanks(const RankedBits& bits, double size)
+  {
+    require(bits.words_.size() == static_cast<std::size_t>(size) / RankedBits::BITS + 1,
+            "a bit map of the feature table is not as large as its steps ask for");
+    RankedBits counted = bits;
+    const std::uint32_t count = counted.rankMembers();
+    for (std::size_t k = 0; k < bits.words_.size(); ++k)
+      require(bits.words_[k].rank == counted.words_[k].rank, "the features of the table are counted wrongly");
+    return count;
+  }
+
+  /// A search in the table must stay within its arrays.
   static void check(const FeatureTable& table, std::size_t num_points)
   {
-    require(table.shift_ >= 1 && table.shift_ <= 31 && table.slots_.size() == std::size_t{1} << (32 - table.shift_),
-            "the size of the feature table is not the power of two that it claims");
-    std::size_t num_keys = 0;
-    for (const FeatureTable::Slot& slot : table.slots_)
-    {
-      num_keys += slot.count > 0 ? 1 : 0;
-      require(slot.begin <= table.entries_.size() && slot.count <= table.entries_.size() - slot.begin,
-              "a slot of the feature table points behind its entries");
-    }
-    require(num_keys == table.num_keys_ && num_keys < table.slots_.size(),
-            "the feature table has another number of keys than it claims");
+    const FeatureQuantizer& q = table.quantizer_;
+    const double geometric_keys = std::pow(q.angle_bins, 3) * q.distance_bins;
+    const double curvatures = std::pow(q.curvature_bins, 2);
+    require(geometric_keys * curvatures < 4294967295.0, "the feature table has more features than can be told apart");
+    const std::uint32_t num_cells = checkRanks(table.cells_, geometric_keys);
+    const std::uint32_t num_features = checkRanks(table.features_, num_cells * curvatures);
+    require(table.starts_.size() == num_features + std::size_t{1} && table.starts_.front() == 0 &&
+                table.starts_.back() == table.entries_.size() &&
+                std::is_sorted(table.starts_.begin(), table.starts_.end()),
+            "a feature of the table points behind its entries");
+    for (const std::uint32_t reference : table.references_)
+      require(reference < num_points, "the feature table names a point that does not exist");
     for (const TableEntry& entry : table.entries_)
-      require(entry.reference() < num_points, "an entry of the feature table names a point that does not exist");
+      require(entry.reference() < table.references_.size(),
+              "an entry of the feature table names a reference that does not exist");
   }
 };
 

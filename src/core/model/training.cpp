@@ -6,6 +6,7 @@
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/common/kd_tree.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/model/reference_choice.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
 #include "bin_picking_perception/model/view_templates.hpp"
 #include "bin_picking_perception/scene/surface_resampling.hpp"
@@ -16,25 +17,28 @@ namespace bin_picking
 {
 namespace
 {
-constexpr double AUTOMATIC_LEAF_SHARE = 0.04;  // of the diameter
-constexpr double MAX_AUTOMATIC_LEAF = 0.006;   // large parts have small features too, ...
-constexpr double MIN_LEAF_SHARE = 0.015;       // ... but the table has a limit
-constexpr double MIN_SEEN_SHARE = 0.02;        // of the views; what is seen from fewer is inside the part
+constexpr double AUTOMATIC_LEAF_SHARE = 0.04;       // of the diameter
+constexpr double AUTOMATIC_MATCHING_SHARE = 0.065;  // of the diameter
+constexpr double MAX_AUTOMATIC_LEAF = 0.006;        // large parts have small features too, ...
+constexpr double MIN_LEAF_SHARE = 0.015;            // ... but the table has a limit
+constexpr double MIN_SEEN_SHARE = 0.02;             // of the views; what is seen from fewer is inside the part
 constexpr std::size_t MIN_MODEL_POINTS = 30;
+constexpr double SYMMETRIC_SPACING = 0.7;  // of the matching leaf; nearer images are one point
 
 /// Replaces every "automatic" length by its value for a part of this diameter.
 void resolve(TrainingParameters& p, double diameter)
 {
   const auto automatic = [](double& value, double derived) { value = value > 0 ? value : derived; };
   automatic(p.leaf, std::min(AUTOMATIC_LEAF_SHARE * diameter, std::max(MAX_AUTOMATIC_LEAF, MIN_LEAF_SHARE * diameter)));
+  automatic(p.matching_leaf, std::max(p.leaf, AUTOMATIC_MATCHING_SHARE * diameter));
   automatic(p.surface_spacing, p.leaf / 2);
   automatic(p.normal_radius, 1.3 * p.leaf);
   automatic(p.curvature_radius, p.leaf * 10 / 3);
-  automatic(p.d_dist, 0.6 * p.leaf);
-  automatic(p.min_pair_distance, 1.5 * p.leaf);
-  if (p.leaf > diameter / 5)
-    throw ParameterError("the leaf is " + std::to_string(1e3 * p.leaf) + " mm, but the part is only " +
-                         std::to_string(1e3 * diameter) +
+  automatic(p.d_dist, 0.6 * p.matching_leaf);
+  automatic(p.min_pair_distance, 1.5 * p.matching_leaf);
+  if (std::max(p.leaf, p.matching_leaf) > diameter / 5)
+    throw ParameterError("the leaf is " + std::to_string(1e3 * std::max(p.leaf, p.matching_leaf)) +
+                         " mm, but the part is only " + std::to_string(1e3 * diameter) +
                          " mm across; at most a fifth of that is useful (is the unit right?)");
 }
 
@@ -100,7 +104,7 @@ std::vector<std::uint64_t> keepVisible(OrientedPoints& points, const TrainedMode
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     // All surface points of the leaf count, on the same side of the wall.
-    tree.radiusSearch(points.points[i], static_cast<float>(model.parameters.leaf * 0.75), neighbours);
+    tree.radiusSearch(points.points[i], static_cast<float>(model.parameters.matching_leaf * 0.75), neighbours);
     std::fill(bits.begin(), bits.end(), 0);
     for (const int n : neighbours)
       if (model.surface.normals[static_cast<std::size_t>(n)].dot(points.normals[i]) > 0.5f)
@@ -150,8 +154,25 @@ void checkPoints(const TrainedModel& model)
 {
   if (model.points.size() < MIN_MODEL_POINTS)
     throw ParameterError("only " + std::to_string(model.points.size()) + " model points are left at a leaf of " +
-                         std::to_string(1e3 * model.parameters.leaf) + " mm, but at least " +
+                         std::to_string(1e3 * model.parameters.matching_leaf) + " mm, but at least " +
                          std::to_string(MIN_MODEL_POINTS) + " are needed; choose a finer leaf");
+}
+
+/// \param visibility per point; empty: every pair counts
+void buildTable(TrainedModel& model, const std::vector<std::uint64_t>& visibility, std::size_t words,
+                const Executor& executor)
+{
+  TrainingParameters& p = model.parameters;
+  const std::vector<std::int8_t> classes = classify(model);
+  const FeatureQuantizer quantizer = makeQuantizer(model);
+  p.d_cur = quantizer.curvature_step;
+  PairSelection selection;
+  selection.min_distance = p.min_pair_distance;
+  selection.visibility = visibility;
+  selection.visibility_words = words;
+  if (p.fold_symmetry)
+    selection.references = referencesUpToSymmetry(model.points, model.symmetry, SYMMETRIC_SPACING * p.matching_leaf);
+  model.table = FeatureTable(model.points, classes, selection, quantizer, executor);
 }
 }  // namespace
 
@@ -177,22 +198,19 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
   model->surface = voxelDownsample(dense, p.surface_spacing);
   report("views");
   model->views = renderViewTemplates(model->mesh, model->surface, p.surface_spacing / 2, p.num_views, executor);
+  model->near_crease = nearCrease(model->surface, p.normal_radius, executor);
+  report("symmetry");
+  compareWithItself(*model, definition, dense);
   report("normals and curvature");
-  model->points = resampleSurface(dense, {p.leaf, p.normal_radius, p.curvature_measure, p.curvature_radius}, executor);
+  model->points =
+      resampleSurface(dense, {p.matching_leaf, p.normal_radius, p.curvature_measure, p.curvature_radius}, executor);
   const std::size_t words = (model->views.size() + 63) / 64;
   std::vector<std::uint64_t> visibility = keepVisible(model->points, *model, words);
   checkPoints(*model);
   if (!p.covisible_pairs)
     visibility.clear();
   report("feature table");
-  const std::vector<std::int8_t> classes = classify(*model);
-  const FeatureQuantizer quantizer = makeQuantizer(*model);
-  model->parameters.d_cur = quantizer.curvature_step;
-  model->table = FeatureTable(model->points, classes, visibility, static_cast<int>(words), quantizer,
-                              p.min_pair_distance, executor);
-  model->near_crease = nearCrease(model->surface, p.normal_radius, executor);
-  report("symmetry");
-  compareWithItself(*model, definition, dense);
+  buildTable(*model, visibility, words, executor);
   return model;
 }
 }  // namespace bin_picking

@@ -7,11 +7,16 @@ namespace bin_picking
 void TrainingParameters::visit(ParameterVisitor& v)
 {
   v.field({"leaf", "m",
-           "voxel edge of the downsampling; 0 = 4 % of the diameter, at most 6 mm or 1.5 %. Voting time grows with "
-           "about its "
-           "-8th power",
+           "voxel edge of the downsampling, from which radii and tolerances follow; 0 = 4 % of the diameter, at most "
+           "6 mm or 1.5 %",
            0, 0.1},
           leaf);
+  v.field(
+      {"matching_leaf", "m",
+       "voxel edge of the points that vote; 0 = 5 % of the diameter, at least the leaf. Voting time grows with about "
+       "its -8th power",
+       0, 0.1},
+      matching_leaf);
   v.field({"surface_spacing", "m",
            "distance of the finer surface points for verification and refinement; 0 = half the leaf", 0, 0.05},
           surface_spacing);
@@ -30,7 +35,7 @@ void TrainingParameters::visit(ParameterVisitor& v)
       {{"mean_curvature", CurvatureMeasure::MeanCurvature}, {"normal_variation", CurvatureMeasure::NormalVariation}});
   v.field({"curvature_radius", "m", "neighbourhood of the curvature, on part and scene; 0 = 3.3 leaf", 0, 0.5},
           curvature_radius);
-  v.field({"d_dist", "m", "step of the distance in the feature; 0 = 0.6 leaf", 0, 0.1}, d_dist);
+  v.field({"d_dist", "m", "step of the distance in the feature; 0 = 0.6 matching_leaf", 0, 0.1}, d_dist);
   v.field({"d_angle", "rad", "step of the three angles in the feature, and of alpha in the accumulator", 0.02, 1.0},
           d_angle);
   v.field({"d_cur", "1/m or none",
@@ -42,9 +47,12 @@ void TrainingParameters::visit(ParameterVisitor& v)
   v.field({"high_curvature_min", "1/m or none",
            "lower end of the high-curvature range of Equation 8; 0 with low = automatic", 0, 1e5},
           high_curvature_min);
-  v.field({"min_pair_distance", "m", "nearer pairs are not stored: their features say little; 0 = 1.5 leaf", 0, 0.2},
+  v.field({"min_pair_distance", "m", "nearer pairs are not stored: their features say little; 0 = 1.5 matching_leaf", 0,
+           0.2},
           min_pair_distance);
   v.field({"covisible_pairs", "", "store only pairs of points that one camera can see together"}, covisible_pairs);
+  v.field({"fold_symmetry", "", "of points that are symmetric images of each other one is the reference of pairs"},
+          fold_symmetry);
   v.field({"num_views", "", "directions from which the part is rendered", 12, 4096}, num_views);
 }
 }  // namespace bin_picking
