@@ -10,7 +10,8 @@
 namespace bin_picking
 {
 /// The two-dimensional accumulator of Section 2.2.3: rows are the table's references, columns are steps of alpha. Cells
-/// are small, so that all of them stay in the processor's cache; a cell that is full stays full.
+/// are small, so that all of them stay in the processor's cache; a cell that is full stays full. In memory, columns lie
+/// one behind the other, so that many rows are searched for their peaks at once.
 class Accumulator
 {
 public:
@@ -34,11 +35,10 @@ public:
   std::vector<Peak> peaks(bool sum_adjacent, double min_share);
 
 private:
-  Peak peakOf(std::size_t row, bool sum_adjacent) const;
+  Peak peakOf(std::uint32_t row, bool sum_adjacent) const;
 
-  std::size_t num_rows_;
+  std::uint32_t num_rows_;
   std::uint32_t num_angles_;
-  unsigned row_shift_;  ///< log2 of the cells per row in memory
   std::vector<std::uint16_t> cells_;
   std::vector<std::uint16_t> highest_;  ///< per row
 };

@@ -59,9 +59,9 @@ namespace
 {
 bool samePose(const Pose& a, const Pose& b, const TrainedModel& model)
 {
-  constexpr double SAME_ANGLE = 0.5;
+  constexpr double SAME_TRACE = 2.75517;  // 1 + 2 cos(0.5 rad), of the turn from one to the other
   return (a * model.center - b * model.center).norm() < 0.1 * model.diameter &&
-         Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() < SAME_ANGLE;
+         a.linear().cwiseProduct(b.linear()).sum() > SAME_TRACE;
 }
 
 /// The strongest peaks that are different poses (Equation 6).
