@@ -20,11 +20,12 @@ struct Ranked
 
 /// Poses from votes are off by about a leaf; so much more is forgiven before they are refined.
 constexpr double UNREFINED = 2;
+constexpr double SAME_DISTANCE = 0.07;  // of the diameter
 
 Ranked lookAt(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
               const VerificationParameters& parameters, int comparison_cell)
 {
-  constexpr std::size_t COARSE_POINTS = 250;
+  constexpr std::size_t COARSE_POINTS = 150;
   const SurfaceIndices facing = facingPoints(model, pose.T_camera_object, COARSE_POINTS);
   const PoseEvidence evidence =
       gatherEvidence(model, facing, pose.T_camera_object, scene.grid, scene.surroundings, scene.normals,
@@ -33,22 +34,29 @@ Ranked lookAt(const Hypothetical& pose, const PreparedScene& scene, const Traine
           coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell)};
 }
 
+bool isSmallTurn(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b)
+{
+  constexpr double COSINE = 0.966;                  // of 15 degrees
+  return a.cwiseProduct(b).sum() > 1 + 2 * COSINE;  // the trace of a^T b
+}
+
 /// The same place and the same turn, but for what a near symmetry of the part turns: whoever is refined first is held
 /// against these anyway (chooseAmongRivals).
 bool samePlace(const Pose& a, const Pose& b, const TrainedModel& model)
 {
-  constexpr double SAME_DISTANCE = 0.07;  // of the diameter
-  constexpr double SAME_TURN = 0.26;      // rad
-  const auto same = [&](const Pose& other) {
-    if ((a * model.center - other * model.center).norm() > SAME_DISTANCE * model.diameter)
+  const double near_enough = SAME_DISTANCE * model.diameter;
+  const Eigen::Vector3d center = a * model.center;
+  const auto same = [&](const Pose& turn) {
+    if ((center - b * (turn * model.center)).squaredNorm() > near_enough * near_enough)
       return false;
+    const Pose other = b * turn;
     const Pose nearest = model.symmetry.trivial() ? other : nearestEquivalent(other, a, model.symmetry);
-    return Eigen::AngleAxisd(a.linear().transpose() * nearest.linear()).angle() < SAME_TURN;
+    return isSmallTurn(a.linear(), nearest.linear());
   };
-  if ((a * model.center - b * model.center).norm() > model.diameter)
+  if ((center - b * model.center).norm() > model.diameter)
     return false;
-  return same(b) || std::any_of(model.near_symmetries.begin(), model.near_symmetries.end(),
-                                [&](const NearSymmetry& near) { return same(b * near.T_object_object); });
+  return same(Pose::Identity()) || std::any_of(model.near_symmetries.begin(), model.near_symmetries.end(),
+                                               [&](const NearSymmetry& near) { return same(near.T_object_object); });
 }
 
 /// All poses, most promising first, each place once.
