@@ -47,7 +47,8 @@ std::vector<Eigen::Vector3f> estimateGridNormals(const DepthGrid& grid, const Co
                                                  const Executor& executor);
 std::vector<Eigen::Vector3f> estimateGridNormals(const DepthGrid& grid, double radius, const Executor& executor);
 
-/// Standard deviation of the depth noise, metres: robust, from residuals of small plane fits. 0 if there is no plane.
+/// Standard deviation of the depth noise, metres: robust, from residuals of small quadric fits. 0 if there is no
+/// surface.
 double estimateDepthNoise(const DepthGrid& grid, const ConnectedRuns& runs);
 
 /// Samples of the scene's surface on the leaf grid.

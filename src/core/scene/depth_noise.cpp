@@ -12,7 +12,7 @@ namespace
 {
 constexpr int HALF_WINDOW = 2;
 constexpr int WINDOW_PIXELS = (2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1);
-constexpr double DEGREES_OF_FREEDOM = WINDOW_PIXELS - 3;
+constexpr double DEGREES_OF_FREEDOM = WINDOW_PIXELS - 6;
 constexpr int MAX_WINDOWS = 20000;
 
 bool isFlatWindow(const DepthGrid& grid, const ConnectedRuns& runs, int u, int v)
@@ -27,28 +27,45 @@ bool isFlatWindow(const DepthGrid& grid, const ConnectedRuns& runs, int u, int v
   return whole;
 }
 
-/// Variance of the depth about the plane that fits best; inverse depth is linear in the pixel on a plane.
-double planeVariance(const DepthGrid& grid, int u, int v)
+/// Products of the window's inverse depths with the polynomials up to the second order that are orthogonal on it.
+struct WindowSums
 {
-  const double z0 = static_cast<double>(grid.z[static_cast<std::size_t>(grid.index(u, v))]);
-  double sum = 0;
-  double sum_u = 0;
-  double sum_v = 0;
+  double one = 0;
+  double u = 0;
+  double v = 0;
+  double uu = 0;  ///< u^2 less its mean
+  double uv = 0;
+  double vv = 0;
   double squares = 0;
+};
+
+/// Variance of the depth about the quadric that fits best. A plane would take the curvature of a slim part for noise;
+/// inverse depth is linear in the pixel on a plane and smooth on what is curved.
+double quadricVariance(const DepthGrid& grid, int u, int v)
+{
+  constexpr double MEAN_SQUARE = HALF_WINDOW * (HALF_WINDOW + 1) / 3.0;
+  const double z0 = static_cast<double>(grid.z[static_cast<std::size_t>(grid.index(u, v))]);
+  WindowSums s;
   for (int dv = -HALF_WINDOW; dv <= HALF_WINDOW; ++dv)
   {
     for (int du = -HALF_WINDOW; du <= HALF_WINDOW; ++du)
     {
       const double q = 1 / static_cast<double>(grid.z[static_cast<std::size_t>(grid.index(u + du, v + dv))]) - 1 / z0;
-      sum += q;
-      sum_u += q * du;
-      sum_v += q * dv;
-      squares += q * q;
+      s.one += q;
+      s.u += q * du;
+      s.v += q * dv;
+      s.uu += q * (du * du - MEAN_SQUARE);
+      s.uv += q * du * dv;
+      s.vv += q * (dv * dv - MEAN_SQUARE);
+      s.squares += q * q;
     }
   }
-  // The window is symmetric and whole: its normal equations are diagonal, and each slope has the same weight.
-  constexpr double SPREAD = WINDOW_PIXELS * HALF_WINDOW * (HALF_WINDOW + 1) / 3.0;
-  const double rest = squares - sum * sum / WINDOW_PIXELS - (sum_u * sum_u + sum_v * sum_v) / SPREAD;
+  // What each polynomial's square sums up to over the window of 5 x 5 pixels.
+  constexpr double LINEAR = 50;
+  constexpr double SQUARE = 70;
+  constexpr double MIXED = 100;
+  const double rest = s.squares - s.one * s.one / WINDOW_PIXELS - (s.u * s.u + s.v * s.v) / LINEAR -
+                      (s.uu * s.uu + s.vv * s.vv) / SQUARE - s.uv * s.uv / MIXED;
   return std::max(0.0, rest) / DEGREES_OF_FREEDOM * std::pow(z0, 4);
 }
 }  // namespace
@@ -60,7 +77,7 @@ double estimateDepthNoise(const DepthGrid& grid, const ConnectedRuns& runs)
   for (int v = HALF_WINDOW; v + HALF_WINDOW < grid.height; v += stride)
     for (int u = HALF_WINDOW; u + HALF_WINDOW < grid.width; u += stride)
       if (isFlatWindow(grid, runs, u, v))
-        variances.push_back(planeVariance(grid, u, v));
+        variances.push_back(quadricVariance(grid, u, v));
   if (variances.empty())
     return 0;
   const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
