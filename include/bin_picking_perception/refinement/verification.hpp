@@ -18,7 +18,7 @@ struct VerificationParameters
   double match_distance = 0.005;
   double min_matching_rate = 0.5;
   double depth_tolerance = 0.15;
-  double noise_tolerance = 6;
+  double noise_tolerance = 5;
   double max_normal_angle = 0.7;
   double min_outline_share = 0.3;
   double min_score = 0.5;
