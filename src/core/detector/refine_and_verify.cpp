@@ -91,6 +91,18 @@ double sharedPart(const std::vector<int>& cells, const std::vector<int>& explain
     shared += std::binary_search(explained.begin(), explained.end(), cell) ? 1 : 0;
   return cells.empty() ? 0 : static_cast<double>(shared) / static_cast<double>(cells.size());
 }
+/// The next poses that lie where nothing was accepted yet. \param next into `ranked`, moved on
+std::vector<const Ranked*> nextRound(const std::vector<Ranked>& ranked, const std::vector<int>& explained,
+                                     std::size_t& next)
+{
+  constexpr std::size_t ROUND = 16;
+  constexpr double EXPLAINED = 0.6;
+  std::vector<const Ranked*> round;
+  for (; next < ranked.size() && round.size() < ROUND; ++next)
+    if (sharedPart(ranked[next].cells, explained) < EXPLAINED)
+      round.push_back(&ranked[next]);
+  return round;
+}
 }  // namespace
 
 int comparisonCell(const PointView& raw, const std::vector<std::shared_ptr<const TrainedModel>>& models)
@@ -110,8 +122,6 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
   const VerificationParameters& verification = parameters.verification;
   // Rounds: what one round has found needs no other explanation in the next. Their size does not depend on the number
   // of threads, so neither do the results.
-  constexpr std::size_t ROUND = 16;
-  constexpr double EXPLAINED = 0.6;
   const std::vector<Ranked> ranked = rankPoses(poses, scene, model, verification, comparison_cell, executor);
   clock.lap("ranking");
   std::vector<Assessed> ready;
@@ -120,10 +130,7 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
   const std::size_t limit = verification.enabled ? static_cast<std::size_t>(verification.max_refined) : ranked.size();
   while (next < ranked.size() && ready.size() < limit)
   {
-    std::vector<const Ranked*> round;
-    for (; next < ranked.size() && round.size() < ROUND; ++next)
-      if (sharedPart(ranked[next].cells, explained) < EXPLAINED)
-        round.push_back(&ranked[next]);
+    const std::vector<const Ranked*> round = nextRound(ranked, explained, next);
     if (deadline.passed())
     {
       partial = partial || !round.empty();

@@ -74,28 +74,36 @@ private:
   int count_ = 0;
 };
 
-/// The measured pixel on which `point` is projected; -1 if its surface is not within `gate`, or another one by its
-/// normal.
+/// The measured pixel at and around the projection of `point` that lies nearest to it in space; -1 if there is none
+/// within `gate` with a fitting normal. The nearest of nine: beyond the edge of a face it is the edge, which holds the
+/// face in its own plane.
 int associate(const Scene& scene, const Eigen::Vector3f& point, const Eigen::Vector3f& normal, float gate)
 {
   const PinholeCamera& camera = scene.grid.camera;
   const float inverse_z = 1 / point.z();
-  const auto u =
-      static_cast<int>(static_cast<float>(camera.fx) * point.x() * inverse_z + static_cast<float>(camera.cx) + 0.5f);
-  const auto v =
-      static_cast<int>(static_cast<float>(camera.fy) * point.y() * inverse_z + static_cast<float>(camera.cy) + 0.5f);
-  if (!scene.grid.inside(u, v))
-    return -1;
-  const int i = scene.grid.index(u, v);
-  const Eigen::Vector3f& n = scene.normals[static_cast<std::size_t>(i)];
-  if (!scene.grid.valid(i) || !(n.dot(normal) >= scene.min_cosine))  // NaN: no normal
-    return -1;
-  // Along the surface the pixel may lie beside the point by its footprint.
-  constexpr float FLATTEST = 0.2f;
-  const Eigen::Vector3f d = scene.grid.point(i) - point;
-  const float cosine = std::max(FLATTEST, -normal.dot(point) / point.norm());
-  const float reach = gate + static_cast<float>(scene.grid.pitch(static_cast<double>(point.z()))) / cosine;
-  return std::abs(normal.dot(d)) < gate && d.squaredNorm() < reach * reach ? i : -1;
+  const auto u = static_cast<int>(
+      std::lround(static_cast<float>(camera.fx) * point.x() * inverse_z + static_cast<float>(camera.cx)));
+  const auto v = static_cast<int>(
+      std::lround(static_cast<float>(camera.fy) * point.y() * inverse_z + static_cast<float>(camera.cy)));
+  int best = -1;
+  float best_distance = gate * gate;
+  for (int dv = -1; dv <= 1; ++dv)
+    for (int du = -1; du <= 1; ++du)
+    {
+      if (!scene.grid.inside(u + du, v + dv))
+        continue;
+      const int i = scene.grid.index(u + du, v + dv);
+      const Eigen::Vector3f& n = scene.normals[static_cast<std::size_t>(i)];
+      if (!scene.grid.valid(i) || !(n.dot(normal) >= scene.min_cosine))  // NaN: no normal
+        continue;
+      const float distance = (scene.grid.point(i) - point).squaredNorm();
+      if (distance < best_distance)
+      {
+        best_distance = distance;
+        best = i;
+      }
+    }
+  return best;
 }
 
 NormalEquations accumulate(const OrientedPoints& model, const std::vector<std::uint32_t>& facing, const Scene& scene,
@@ -115,15 +123,15 @@ NormalEquations accumulate(const OrientedPoints& model, const std::vector<std::u
     const int i = associate(scene, point, normal, static_cast<float>(gate));
     if (i < 0)
       continue;
-    // Along the part's normal, which is exact; the measured one only says whether it is the same surface.
-    const float residual = normal.dot(scene.grid.point(i) - point);
+    const Eigen::Vector3f& n = scene.normals[static_cast<std::size_t>(i)];
+    const float residual = n.dot(scene.grid.point(i) - point);
     // Tukey's biweight at the gate: a neighbour's surface just inside it pulls little.
     const float share = residual * inverse_gate;
     const float root = 1 - share * share;
     Eigen::Matrix<float, 6, 1> row;
     const Eigen::Vector3f lever = (point - origin) * inverse_radius;
-    row << lever.y() * normal.z() - lever.z() * normal.y(), lever.z() * normal.x() - lever.x() * normal.z(),
-        lever.x() * normal.y() - lever.y() * normal.x(), normal;
+    row << lever.y() * n.z() - lever.z() * n.y(), lever.z() * n.x() - lever.x() * n.z(),
+        lever.x() * n.y() - lever.y() * n.x(), n;
     sums.add(row, residual, root * root);
   }
   return sums.equations();
