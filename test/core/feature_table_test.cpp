@@ -265,7 +265,7 @@ TEST(CurvatureBins, oneBinWhereCurvatureDoesNotVary)
   for (int i = 0; i <= 1000; ++i)
     spread.push_back(static_cast<float>(i - 500) / 10);
   chooseCurvatureBins(q, spread, 0, 100);
-  EXPECT_EQ(q.curvature_bins, MAX_AUTOMATIC_CURVATURE_BINS);
+  EXPECT_EQ(q.curvature_bins, AUTOMATIC_CURVATURE_BINS);
   chooseCurvatureBins(q, spread, 25, 100);
   EXPECT_EQ(q.curvature_bins, 4);
   EXPECT_EQ(q.curvature_min, -50);
