@@ -37,7 +37,7 @@ struct Hypothesis
   Pose T_camera_object = Pose::Identity();
   double votes = 0;
   int reference = 0;    ///< scene sample
-  int model_point = 0;  ///< row of the accumulator
+  int model_point = 0;  ///< into TrainedModel::points
 };
 
 struct VotingStatistics

@@ -60,7 +60,7 @@ Pose polish(const Pose& T_camera_object, const PreparedScene& scene, const Train
 {
   if (icp.method != IcpMethod::Projective)
     return T_camera_object;
-  icp.max_iterations -= icp.max_iterations / 2;
+  icp.max_iterations /= 2;
   icp.max_distance = icp.min_distance;
   return icpOnGrid(T_camera_object, ICP_POINTS, scene, model, icp);
 }

@@ -24,21 +24,21 @@ enum Sum : std::size_t
   N,
   X,
   Y,
-  XX,
+  X2,
   XY,
-  YY,
-  XXX,
-  XXY,
-  XYY,
-  YYY,
-  XXXX,
-  XXXY,
-  XXYY,
-  XYYY,
-  YYYY,
-  Z_XX,
+  Y2,
+  X3,
+  X2Y,
+  XY2,
+  Y3,
+  X4,
+  X3Y,
+  X2Y2,
+  XY3,
+  Y4,
+  Z_X2,
   Z_XY,
-  Z_YY,
+  Z_Y2,
   Z_X,
   Z_Y,
   Z
@@ -73,21 +73,21 @@ BIN_PICKING_SIMD void sumMoments(const Neighbourhood& found, const float* given_
       sums[N][l] += weight;
       sums[X][l] += x;
       sums[Y][l] += y;
-      sums[XX][l] += xx;
+      sums[X2][l] += xx;
       sums[XY][l] += xy;
-      sums[YY][l] += yy;
-      sums[XXX][l] += xx * x;
-      sums[XXY][l] += xx * y;
-      sums[XYY][l] += x * yy;
-      sums[YYY][l] += yy * y;
-      sums[XXXX][l] += xx * xx;
-      sums[XXXY][l] += xx * xy;
-      sums[XXYY][l] += xx * yy;
-      sums[XYYY][l] += xy * yy;
-      sums[YYYY][l] += yy * yy;
-      sums[Z_XX][l] += z * xx;
+      sums[Y2][l] += yy;
+      sums[X3][l] += xx * x;
+      sums[X2Y][l] += xx * y;
+      sums[XY2][l] += x * yy;
+      sums[Y3][l] += yy * y;
+      sums[X4][l] += xx * xx;
+      sums[X3Y][l] += xx * xy;
+      sums[X2Y2][l] += xx * yy;
+      sums[XY3][l] += xy * yy;
+      sums[Y4][l] += yy * yy;
+      sums[Z_X2][l] += z * xx;
       sums[Z_XY][l] += z * xy;
-      sums[Z_YY][l] += z * yy;
+      sums[Z_Y2][l] += z * yy;
       sums[Z_X][l] += z * x;
       sums[Z_Y][l] += z * y;
       sums[Z][l] += z;
@@ -129,13 +129,13 @@ bool solve(double (&m)[ORDER][ORDER], double (&b)[ORDER], double min_pivot)
 double QuadricMoments::meanCurvature() const
 {
   const auto& s = sums_;
-  double m[ORDER][ORDER] = {{s[XXXX]},
-                            {s[XXXY], s[XXYY]},
-                            {s[XXYY], s[XYYY], s[YYYY]},
-                            {s[XXX], s[XXY], s[XYY], s[XX]},
-                            {s[XXY], s[XYY], s[YYY], s[XY], s[YY]},
-                            {s[XX], s[XY], s[YY], s[X], s[Y], s[N]}};
-  double q[ORDER] = {s[Z_XX], s[Z_XY], s[Z_YY], s[Z_X], s[Z_Y], s[Z]};
+  double m[ORDER][ORDER] = {{s[X4]},
+                            {s[X3Y], s[X2Y2]},
+                            {s[X2Y2], s[XY3], s[Y4]},
+                            {s[X3], s[X2Y], s[XY2], s[X2]},
+                            {s[X2Y], s[XY2], s[Y3], s[XY], s[Y2]},
+                            {s[X2], s[XY], s[Y2], s[X], s[Y], s[N]}};
+  double q[ORDER] = {s[Z_X2], s[Z_XY], s[Z_Y2], s[Z_X], s[Z_Y], s[Z]};
   if (!solve(m, q, MIN_PIVOT * count()))
     return std::numeric_limits<double>::quiet_NaN();
   return quadricCurvature(q[0], q[1], q[2], q[3], q[4]).mean;
