@@ -9,7 +9,7 @@ namespace bin_picking::kernels
 {
 namespace
 {
-constexpr std::size_t ICP_POINTS = 750;  // as many as detection takes
+constexpr std::size_t ICP_PIXELS = 1500;  // as many as detection takes
 constexpr std::size_t TEST_POINTS = 1500;
 
 /// Calls work(pose) for every pose of the workbench in each iteration.
@@ -26,9 +26,9 @@ void forEachPose(benchmark::State& state, const Work& work)
 Pose refined(const Pose& T_camera_object)
 {
   const Workbench& bench = workbench();
-  return icpProjective(bench.model->surface, facingPoints(*bench.model, T_camera_object, ICP_POINTS), bench.scene.grid, bench.scene.normals,
-                       T_camera_object, bench.model->parameters.leaf, bench.parameters.icp)
-      .T_camera_object;
+  const MeasuredPart measured =
+      measuredNear(*bench.model, T_camera_object, bench.scene.grid, bench.scene.normals, bench.scene.edges, ICP_PIXELS);
+  return icpDistanceField(*bench.model, measured, T_camera_object, bench.parameters.icp).T_camera_object;
 }
 
 void icp(benchmark::State& state)

@@ -6,7 +6,6 @@
 
 #include <numeric>
 
-#include "bin_picking_perception/refinement/icp.hpp"
 #include "bin_picking_perception/scene/preprocessing.hpp"
 #include "tee_scene.hpp"
 
@@ -176,59 +175,6 @@ TEST(CoveredCells, doNotDependOnTheReduction)
       coarse.push_back(v * width / 2 + u);
   EXPECT_EQ(coveredCells(fine, width, 1, 5), coveredCells(coarse, width / 2, 2, 5));
   EXPECT_EQ(coveredCells(fine, width, 1, 5).size(), 64u);
-}
-
-TEST(IcpProjective, removesASmallErrorAndStaysRigid)
-{
-  const auto poses = test::posesApart(4, 9);
-  const Scene scene = sceneOf(poses, 0.0001);
-  std::mt19937 random(2);
-  for (const auto& truth : poses)
-  {
-    Pose start = truth;
-    start.linear() = truth.linear() * Eigen::AngleAxisd(0.06, test::unitVector(random)).toRotationMatrix();
-    start.translation() += 0.002 * test::unitVector(random);
-    const IcpResult result = icpProjective(test::teeModel()->surface, facingPoints(*test::teeModel(), start, 800),
-                                           scene.grid, scene.normals, start, test::teeModel()->parameters.leaf, {});
-    // sigma 0.1 mm on some 2000 pixels: the statistical error is below 0.01 mm; edges and quantisation leave more.
-    EXPECT_LT((result.T_camera_object * test::teeModel()->center - truth * test::teeModel()->center).norm(), 0.0003);
-    EXPECT_LT(test::rotationError(result.T_camera_object, truth), 0.008);
-    EXPECT_NEAR(result.T_camera_object.linear().determinant(), 1, 1e-12);
-    EXPECT_GT(result.correspondences, 200);
-  }
-}
-
-TEST(IcpProjective, doesNotSlideAlongACylinder)
-{
-  // Only the side of a long cylinder is in the picture: nothing holds it along its axis.
-  DepthRenderer renderer(480, 384, test::smallCamera());
-  const OrientedPoints tube = test::cylinder(0.02, 1.0, 400000);
-  Pose T = Pose::Identity();
-  T.linear() = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  T.translation().z() = 0.6;
-  renderer.draw(tube, T, 0.001, 1);
-  const DepthGrid grid = renderer.grid();
-  const auto normals = estimateGridNormals(grid, 0.005, Executor(1));
-  const OrientedPoints model = test::cylinder(0.02, 0.1, 4000);
-  Pose start = T;
-  start.translation() += Eigen::Vector3d(0.003, 0.0015, 0.001);
-  const IcpResult result = icpProjective(model, allPoints(model), grid, normals, start, 0.004, {});
-  const Eigen::Vector3d moved = result.T_camera_object.translation() - T.translation();
-  EXPECT_NEAR(moved.x(), 0.003, 0.0005) << "slid along the axis";
-  EXPECT_NEAR(moved.y(), 0, 0.0002);
-  EXPECT_NEAR(moved.z(), 0, 0.0005);
-}
-
-TEST(IcpProjective, withoutDataThePoseStaysAndRmsIsNan)
-{
-  const DepthGrid nothing = makeGrid(480, 384, test::smallCamera());
-  const std::vector<Eigen::Vector3f> normals(nothing.size(), Eigen::Vector3f::Constant(NAN));
-  const auto start = test::posesApart(1, 1)[0];
-  const IcpResult result = icpProjective(test::teeModel()->surface, facingPoints(*test::teeModel(), start, 500),
-                                         nothing, normals, start, 0.004, {});
-  EXPECT_TRUE(std::isnan(result.rms));
-  EXPECT_FALSE(result.converged);
-  EXPECT_TRUE(result.T_camera_object.matrix() == start.matrix());
 }
 }  // namespace
 }  // namespace bin_picking

@@ -41,8 +41,49 @@ public:
     return step_ * mix(bottom, top, f.z());
   }
 
+  struct Sample
+  {
+    float distance = 0;
+    Eigen::Vector3f gradient = Eigen::Vector3f::Zero();  ///< of the distance, that is, about the surface's normal
+  };
+
+  /// The distance as at() gives it, and how it changes from place to place; outside of the grid it does not.
+  Sample sample(const Eigen::Vector3f& p) const
+  {
+    const Eigen::Array3f q = (p - low_).array() * inverse_cell_;
+    if ((q < 0).any() || (q >= limit_).any())
+      return {band_, Eigen::Vector3f::Zero()};
+    const Eigen::Array3i i = q.cast<int>();
+    const Eigen::Array3f f = q - i.cast<float>();
+    const std::size_t k = (static_cast<std::size_t>(i.z()) * rows_ + static_cast<std::size_t>(i.y())) * columns_ +
+                          static_cast<std::size_t>(i.x());
+    const std::size_t up = rows_ * columns_;
+    // Along x on the four edges of the cell, then between the edges.
+    const Edge e00 = edge(k, f.x());
+    const Edge e10 = edge(k + columns_, f.x());
+    const Edge e01 = edge(k + up, f.x());
+    const Edge e11 = edge(k + up + columns_, f.x());
+    const float bottom = mix(e00.value, e10.value, f.y());
+    const float top = mix(e01.value, e11.value, f.y());
+    const Eigen::Vector3f slope(mix(mix(e00.slope, e10.slope, f.y()), mix(e01.slope, e11.slope, f.y()), f.z()),
+                                mix(e10.value - e00.value, e11.value - e01.value, f.z()), top - bottom);
+    return {step_ * mix(bottom, top, f.z()), step_ * inverse_cell_ * slope};
+  }
+
 private:
   friend struct ModelFileAccess;
+  struct Edge
+  {
+    float value;
+    float slope;
+  };
+  Edge edge(std::size_t k, float share) const
+  {
+    const auto begin = static_cast<float>(values_[k]);
+    const float slope = static_cast<float>(values_[k + 1]) - begin;
+    return {begin + share * slope, slope};
+  }
+
   /// What follows from the sizes: the step of the values and the last cell.
   void fillDerived();
   float alongX(std::size_t k, float share) const

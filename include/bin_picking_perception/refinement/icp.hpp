@@ -7,6 +7,8 @@
 
 #include "bin_picking_perception/common/oriented_points.hpp"
 #include "bin_picking_perception/common/parameters.hpp"
+#include "bin_picking_perception/model/trained_model.hpp"
+#include "bin_picking_perception/scene/depth_edges.hpp"
 #include "bin_picking_perception/scene/depth_grid.hpp"
 
 namespace bin_picking
@@ -15,13 +17,13 @@ enum class IcpMethod
 {
   None,
   PointToPoint,  ///< Besl and McKay 1992, nearest neighbours: the paper's choice
-  Projective     ///< point to plane on the organized grid
+  DistanceField  ///< measured points against the part's distance field
 };
 
 struct IcpParameters
 {
-  IcpMethod method = IcpMethod::Projective;
-  int max_iterations = 20;
+  IcpMethod method = IcpMethod::DistanceField;
+  int max_iterations = 10;
   double max_distance = 1.5;      // of the leaf: start of the correspondence gate
   double min_distance = 0.5;      // of the leaf: its end
   double max_normal_angle = 0.8;  // rad
@@ -43,10 +45,23 @@ struct IcpResult
 IcpResult icpPointToPoint(const OrientedPoints& model, const OrientedPoints& scene, const Pose& initial,
                           double max_distance, const IcpParameters& parameters);
 
-/// Point-to-plane ICP with projective association on the grid. Directions in which the surface does not hold the part (a
-/// cylinder's axis) are left as they were. \param facing the points of `model` that face the camera at the initial pose
-/// \param leaf scales the correspondence gate, metres
-IcpResult icpProjective(const OrientedPoints& model, const std::vector<std::uint32_t>& facing, const DepthGrid& grid,
-                        const std::vector<Eigen::Vector3f>& normals, const Pose& initial, double leaf,
-                        const IcpParameters& parameters);
+/// What was measured where a part may be, camera frame.
+struct MeasuredPart
+{
+  OrientedPoints surface;  ///< with the measured normals
+  OrientedPoints edges;    ///< points of outlines; "normals" point outward in the picture, across the viewing ray
+};
+
+/// The measurements in the box of the part at a pose, grown by the band of its distance field.
+/// \param max_pixels about so many pixels at most are looked at, evenly
+MeasuredPart measuredNear(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
+                          const std::vector<Eigen::Vector3f>& normals, const DepthEdges& edges, std::size_t max_pixels);
+
+/// ICP of measured points against the distance field of the part, which knows the nearest point of its surface for
+/// every place (Fitzgibbon 2003): Gauss-Newton on the distances, robust (Tukey's biweight), the gate closing from
+/// max_distance to min_distance. Where the surface lets the part slide, as a flat face does in its own plane, its
+/// outline holds it: a place that lies a step outside of a measured edge should lie a step off the part.
+/// Directions that nothing holds (a tube of which no end is in view) are left as they were.
+IcpResult icpDistanceField(const TrainedModel& model, const MeasuredPart& measured, const Pose& initial,
+                           const IcpParameters& parameters);
 }  // namespace bin_picking

@@ -25,16 +25,16 @@ double depthTolerance(const PreparedScene& scene, const TrainedModel& model, con
 namespace
 {
 constexpr std::size_t COARSE_POINTS = 250;
-constexpr std::size_t ICP_POINTS = 750;
+constexpr std::size_t COARSE_PIXELS = 500;  // about half of them belong to the part
+constexpr std::size_t ICP_PIXELS = 1500;
 constexpr std::size_t TEST_POINTS = 1500;
 constexpr double OUTLINE_NOISE = 3;  // standard deviations that are no step in depth
 
-Pose icpOnGrid(const Pose& T_camera_object, std::size_t points, const PreparedScene& scene, const TrainedModel& model,
-               const IcpParameters& icp)
+Pose icpOnField(const Pose& T_camera_object, std::size_t pixels, const PreparedScene& scene, const TrainedModel& model,
+                const IcpParameters& icp)
 {
-  return icpProjective(model.surface, facingPoints(model, T_camera_object, points), scene.grid, scene.normals,
-                       T_camera_object, model.parameters.leaf, icp)
-      .T_camera_object;
+  const MeasuredPart measured = measuredNear(model, T_camera_object, scene.grid, scene.normals, scene.edges, pixels);
+  return icpDistanceField(model, measured, T_camera_object, icp).T_camera_object;
 }
 
 /// Half of the iterations, with few points: enough to see whether a pose is worth more.
@@ -46,9 +46,9 @@ Pose refineRoughly(const Hypothetical& pose, const PreparedScene& scene, const T
       return icpPointToPoint(model.surface, pose.region->samples, pose.T_camera_object,
                              icp.max_distance * model.parameters.leaf, icp)
           .T_camera_object;
-    case IcpMethod::Projective:
+    case IcpMethod::DistanceField:
       icp.max_iterations = (icp.max_iterations + 1) / 2;
-      return icpOnGrid(pose.T_camera_object, COARSE_POINTS, scene, model, icp);
+      return icpOnField(pose.T_camera_object, COARSE_PIXELS, scene, model, icp);
     case IcpMethod::None:
       break;
   }
@@ -58,11 +58,11 @@ Pose refineRoughly(const Hypothetical& pose, const PreparedScene& scene, const T
 /// The other half, with all points and a narrow gate.
 Pose polish(const Pose& T_camera_object, const PreparedScene& scene, const TrainedModel& model, IcpParameters icp)
 {
-  if (icp.method != IcpMethod::Projective)
+  if (icp.method != IcpMethod::DistanceField)
     return T_camera_object;
   icp.max_iterations /= 2;
   icp.max_distance = icp.min_distance;
-  return icpOnGrid(T_camera_object, ICP_POINTS, scene, model, icp);
+  return icpOnField(T_camera_object, ICP_PIXELS, scene, model, icp);
 }
 
 /// Neither finer refinement nor another turn would save this pose.

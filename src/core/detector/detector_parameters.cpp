@@ -58,7 +58,7 @@ DetectorParameters accuratePreset()
   p.voting.peaks_per_reference = 3;
   p.clustering.max_clusters = 600;
   p.verification.max_refined = 240;
-  p.icp.max_iterations = 30;
+  p.icp.max_iterations = 16;
   return p;
 }
 }  // namespace

@@ -40,6 +40,9 @@ void describeScene(PreparedScene& scene, const TrainedModel& model, const Detect
   scene.runs = connectedRuns(scene.grid, EdgeRule(), executor);
   scene.noise = estimateDepthNoise(scene.grid, scene.runs);
   clock.lap("noise");
+  scene.edges =
+      findDepthEdges(scene.grid, scene.surroundings, scene.runs, 0.5 * trained.leaf + 3 * scene.noise, executor);
+  clock.lap("edges");
   scene.normals = estimateGridNormals(scene.grid, scene.runs, trained.normal_radius, executor);
   clock.lap("normals");
   scene.samples = sampleScene(scene.grid, scene.normals, trained.matching_leaf, parameters.preprocessing);

@@ -10,6 +10,7 @@
 #include "bin_picking_perception/detector.hpp"
 #include "bin_picking_perception/matching/clustering.hpp"
 #include "bin_picking_perception/refinement/verification.hpp"
+#include "bin_picking_perception/scene/depth_edges.hpp"
 #include "bin_picking_perception/scene/grid_connectivity.hpp"
 #include "stage_clock.hpp"
 
@@ -22,6 +23,7 @@ struct PreparedScene
   DepthGrid grid;                        ///< working grid, only the region where parts are searched
   int reduction = 1;                     ///< raw pixels per pixel of the working grid
   ConnectedRuns runs;                    ///< of the working grid
+  DepthEdges edges;                      ///< of the working grid
   std::vector<Eigen::Vector3f> normals;  ///< per pixel of the working grid
   double noise = 0;                      ///< of the depth, metres
   SceneSamples samples;
