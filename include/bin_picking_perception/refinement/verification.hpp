@@ -31,6 +31,7 @@ struct VerificationParameters
   double max_bin_penetration = 0.006;
   double overlap = 0.35;
   int max_refined = 120;
+  int fruitless_rounds = 2;
 
   void visit(ParameterVisitor& v);
 };
@@ -48,7 +49,7 @@ struct PoseEvidence
   double unmeasured = 0;    ///< no data (or outside of the picture)
   double matched = 0;       ///< measured, not occluded, and within the distance of Equation 9
   double rms = 0;           ///< point-to-plane residual of the explained points, metres
-  std::vector<int> pixels;  ///< of the explained points, ascending, unique
+  std::vector<int> pixels;  ///< of the explained points, in their order
 
   /// Explained among all that speak for or against the pose, [0, 1].
   double inlierShare(double unmeasured_weight) const;

@@ -127,8 +127,9 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
   std::vector<Assessed> ready;
   std::vector<int> explained;
   std::size_t next = 0;
+  int fruitless = 0;
   const std::size_t limit = verification.enabled ? static_cast<std::size_t>(verification.max_refined) : ranked.size();
-  while (next < ranked.size() && ready.size() < limit)
+  while (next < ranked.size() && ready.size() < limit && fruitless < verification.fruitless_rounds)
   {
     const std::vector<const Ranked*> round = nextRound(ranked, explained, next);
     if (deadline.passed())
@@ -140,10 +141,14 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
     executor.forEach(round.size(), [&](std::size_t i) {
       assessed[i] = assess(*round[i]->pose, scene, model, parameters, comparison_cell);
     });
+    ++fruitless;
     for (Assessed& candidate : assessed)
     {
       if (candidate.detection.rejection.empty())
+      {
+        fruitless = 0;
         explained.insert(explained.end(), candidate.cells.begin(), candidate.cells.end());
+      }
       ready.push_back(std::move(candidate));
     }
     std::sort(explained.begin(), explained.end());

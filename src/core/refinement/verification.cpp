@@ -63,6 +63,11 @@ void VerificationParameters::visit(ParameterVisitor& v)
       {"overlap", "", "a detection that shares more than this part of its pixels with better ones is dropped", 0.01, 1},
       overlap);
   v.field({"max_refined", "", "clusters that are refined and tested in full, best first", 1, 10000}, max_refined);
+  v.field({"fruitless_rounds", "",
+           "poses are refined in rounds of 16, most promising first; the search ends after so many rounds in a row of "
+           "which nothing was accepted",
+           1, 1000},
+          fruitless_rounds);
 }
 
 double PoseEvidence::inlierShare(double unmeasured_weight) const
@@ -115,6 +120,15 @@ struct Finding
   bool matched = false;
 };
 
+/// A point of the part at a pose, as the camera sees it.
+struct PosedPoint
+{
+  Eigen::Vector3f position;
+  Eigen::Vector3f normal;
+  float cosine;  ///< between the normal and the ray to the camera
+  bool crease;   ///< the measured normal may be anything between those of two faces
+};
+
 class PointTest
 {
 public:
@@ -123,50 +137,50 @@ public:
       : grid_(grid),
         surroundings_(surroundings),
         normals_(normals),
+        focal_(static_cast<float>(grid.camera.fx), static_cast<float>(grid.camera.fy)),
+        middle_(static_cast<float>(grid.camera.cx), static_cast<float>(grid.camera.cy)),
+        pitch_per_depth_(static_cast<float>(grid.pitch(1.0))),
         tolerance_(static_cast<float>(tolerance)),
         match_distance_(static_cast<float>(parameters.match_distance)),
         min_cosine_(static_cast<float>(std::cos(parameters.max_normal_angle)))
   {}
 
-  /// \param crease the measured normal may be anything between those of two faces
-  Finding operator()(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, bool crease) const
+  Finding operator()(const PosedPoint& point) const
   {
-    const auto& camera = grid_.camera;
-    const auto u = static_cast<int>(std::lround(camera.fx * static_cast<double>(point.x() / point.z()) + camera.cx));
-    const auto v = static_cast<int>(std::lround(camera.fy * static_cast<double>(point.y() / point.z()) + camera.cy));
+    const float inverse_z = 1 / point.position.z();
+    const float u = focal_.x() * point.position.x() * inverse_z + middle_.x() + 0.5f;
+    const float v = focal_.y() * point.position.y() * inverse_z + middle_.y() + 0.5f;
     Finding finding;
-    if (!grid_.inside(u, v))
+    if (!(u >= 0 && v >= 0 && u < static_cast<float>(grid_.width) && v < static_cast<float>(grid_.height)))
       return finding;
-    const int center = grid_.index(u, v);
+    const int column = static_cast<int>(u);
+    const int row = static_cast<int>(v);
+    const float pitch = pitch_per_depth_ * point.position.z();
+    // The pixel's footprint on a surface that is seen at a flat angle.
+    const float aside = tolerance_ + 1.5f * pitch / std::max(0.2f, point.cosine);
     // The measured surface may lie half a pixel beside the ray: a neighbour that explains the point is as good.
     constexpr int AROUND[5][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     for (const auto& offset : AROUND)
-      if (grid_.inside(u + offset[0], v + offset[1]) &&
-          explains(grid_.index(u + offset[0], v + offset[1]), point, normal, crease, finding))
+      if (grid_.inside(column + offset[0], row + offset[1]) &&
+          explains(grid_.index(column + offset[0], row + offset[1]), point, aside * aside, finding))
         return finding;
+    const int center = grid_.index(column, row);
     if (surroundings_.valid(center))
-      finding.verdict = contradiction(center, point, normal);
+      finding.verdict = contradiction(center, point, pitch);
     return finding;
   }
 
 private:
-  bool explains(int pixel, const Eigen::Vector3f& point, const Eigen::Vector3f& normal, bool crease,
-                Finding& finding) const
+  bool explains(int pixel, const PosedPoint& point, float max_squared_aside, Finding& finding) const
   {
-    if (!grid_.valid(pixel))
-      return false;
-    const Eigen::Vector3f d = grid_.point(pixel) - point;
-    const auto pitch = static_cast<float>(grid_.pitch(static_cast<double>(point.z())));
-    const float residual = normal.dot(d);
-    const float aside = (d - residual * normal).norm();
-    // The pixel's footprint on a surface that is seen at a flat angle.
-    const float cosine = std::max(0.2f, -normal.dot(point) / point.norm());
-    const bool is_near = aside < tolerance_ + 1.5f * pitch / cosine;
+    const Eigen::Vector3f d = grid_.point(pixel) - point.position;
+    const float residual = point.normal.dot(d);
+    const float squared_aside = d.squaredNorm() - residual * residual;
+    const bool is_near = squared_aside < max_squared_aside;  // false for NaN: nothing was measured
     finding.matched = finding.matched || (is_near && std::abs(residual) < match_distance_);
     if (!is_near || std::abs(residual) > tolerance_)
       return false;
-    const Eigen::Vector3f& measured = normals_[static_cast<std::size_t>(pixel)];
-    if (!crease && !std::isnan(measured.x()) && measured.dot(normal) < min_cosine_)
+    if (!point.crease && normals_[static_cast<std::size_t>(pixel)].dot(point.normal) < min_cosine_)  // false for NaN
       return false;
     finding.verdict = Verdict::Explained;
     finding.pixel = pixel;
@@ -174,12 +188,11 @@ private:
     return true;
   }
 
-  Verdict contradiction(int pixel, const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const
+  Verdict contradiction(int pixel, const PosedPoint& point, float pitch) const
   {
-    const auto pitch = static_cast<float>(grid_.pitch(static_cast<double>(point.z())));
-    const float cosine = std::max(0.3f, -normal.dot(point) / point.norm());
+    const float cosine = std::max(0.3f, point.cosine);
     const float limit = tolerance_ / cosine + pitch * std::sqrt(1 - cosine * cosine) / cosine;
-    const float ahead = point.z() - surroundings_.z[static_cast<std::size_t>(pixel)];
+    const float ahead = point.position.z() - surroundings_.z[static_cast<std::size_t>(pixel)];
     if (ahead > limit)
       return Verdict::Occluded;
     if (ahead < -limit)
@@ -190,6 +203,9 @@ private:
   const DepthGrid& grid_;
   const DepthGrid& surroundings_;
   const std::vector<Eigen::Vector3f>& normals_;
+  Eigen::Vector2f focal_;
+  Eigen::Vector2f middle_;
+  float pitch_per_depth_;
   float tolerance_;
   float match_distance_;
   float min_cosine_;
@@ -230,21 +246,19 @@ PoseEvidence gatherEvidence(const TrainedModel& model, const SurfaceIndices& fac
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   const PointTest test(grid, surroundings, normals, tolerance, parameters);
   PoseEvidence evidence;
+  evidence.pixels.reserve(facing.size());
   for (const std::uint32_t i : facing)
   {
-    const Eigen::Vector3f point = T * model.surface.points[i];
-    const Eigen::Vector3f normal = T.linear() * model.surface.normals[i];
-    const float cosine = -normal.dot(point) / point.norm();
-    if (point.z() <= 0 || cosine <= 0)
+    PosedPoint point{T * model.surface.points[i], T.linear() * model.surface.normals[i], 0, model.near_crease[i] != 0};
+    point.cosine = -point.normal.dot(point.position) / point.position.norm();
+    if (point.position.z() <= 0 || point.cosine <= 0)
       continue;  // just beyond the silhouette at this pose
-    const auto weight = static_cast<double>(cosine);
+    const auto weight = static_cast<double>(point.cosine);
     evidence.facing += weight;
-    count(test(point, normal, model.near_crease[i] != 0), weight, evidence);
+    count(test(point), weight, evidence);
   }
   evidence.rms =
       evidence.explained > 0 ? std::sqrt(evidence.rms / evidence.explained) : std::numeric_limits<double>::quiet_NaN();
-  std::sort(evidence.pixels.begin(), evidence.pixels.end());
-  evidence.pixels.erase(std::unique(evidence.pixels.begin(), evidence.pixels.end()), evidence.pixels.end());
   return evidence;
 }
 

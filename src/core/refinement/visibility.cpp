@@ -10,43 +10,66 @@ namespace bin_picking
 {
 namespace
 {
-/// Nearest depth per cell of the image plane z = 1.
+/// A surface point that faces the camera, at its place in the image plane z = 1.
+struct Facing
+{
+  std::uint32_t index;
+  Eigen::Vector2f place;
+  float depth;
+  float cosine;  ///< between the normal and the ray to the camera
+};
+
+std::vector<Facing> pointsFacing(const TrainedModel& model, const Eigen::Isometry3f& T_camera_object)
+{
+  std::vector<Facing> points;
+  points.reserve(model.surface.size() / 2);
+  for (std::size_t i = 0; i < model.surface.size(); ++i)
+  {
+    const Eigen::Vector3f p = T_camera_object * model.surface.points[i];
+    const float towards = -(T_camera_object.linear() * model.surface.normals[i]).dot(p);
+    if (p.z() > 0 && towards > 0)
+      points.push_back({static_cast<std::uint32_t>(i), p.head<2>() / p.z(), p.z(), towards / p.norm()});
+  }
+  return points;
+}
+
+/// Nearest depth per cell of the image plane.
 class DepthCells
 {
 public:
-  DepthCells(const std::vector<Eigen::Vector3f>& points, float cell) : cell_(cell)
+  DepthCells(const std::vector<Facing>& points, float cell)
   {
     Eigen::Vector2f low = Eigen::Vector2f::Constant(std::numeric_limits<float>::max());
     Eigen::Vector2f high = -low;
-    for (const auto& p : points)
+    for (const Facing& p : points)
     {
-      low = low.cwiseMin(p.head<2>() / p.z());
-      high = high.cwiseMax(p.head<2>() / p.z());
+      low = low.cwiseMin(p.place);
+      high = high.cwiseMax(p.place);
     }
     low_ = low;
     constexpr float MAX_SIDE = 2048;  // a pose that almost touches the camera must not cost memory
-    cell_ = std::max(cell_, (high - low).maxCoeff() / MAX_SIDE);
-    width_ = static_cast<int>((high.x() - low.x()) / cell_) + 1;
-    const int height = static_cast<int>((high.y() - low.y()) / cell_) + 1;
+    inverse_cell_ = 1 / std::max(cell, (high - low).maxCoeff() / MAX_SIDE);
+    width_ = static_cast<int>((high.x() - low.x()) * inverse_cell_) + 1;
+    const int height = static_cast<int>((high.y() - low.y()) * inverse_cell_) + 1;
     depth_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height),
                   std::numeric_limits<float>::max());
-    for (const auto& p : points)
+    for (const Facing& p : points)
     {
       float& depth = depth_[index(p)];
-      depth = std::min(depth, p.z());
+      depth = std::min(depth, p.depth);
     }
   }
 
-  float at(const Eigen::Vector3f& p) const { return depth_[index(p)]; }
+  float at(const Facing& p) const { return depth_[index(p)]; }
 
 private:
-  std::size_t index(const Eigen::Vector3f& p) const
+  std::size_t index(const Facing& p) const
   {
-    const Eigen::Vector2f q = (p.head<2>() / p.z() - low_) / cell_;
+    const Eigen::Vector2f q = (p.place - low_) * inverse_cell_;
     return static_cast<std::size_t>(static_cast<int>(q.y()) * width_ + static_cast<int>(q.x()));
   }
 
-  float cell_;
+  float inverse_cell_ = 0;
   Eigen::Vector2f low_;
   int width_ = 1;
   std::vector<float> depth_;
@@ -55,31 +78,21 @@ private:
 
 SurfaceIndices visiblePoints(const TrainedModel& model, const Pose& T_camera_object)
 {
-  const Eigen::Isometry3f T = T_camera_object.cast<float>();
-  std::vector<Eigen::Vector3f> points;
-  SurfaceIndices indices;
-  for (std::size_t i = 0; i < model.surface.size(); ++i)
-  {
-    const Eigen::Vector3f p = T * model.surface.points[i];
-    if (p.z() <= 0 || (T.linear() * model.surface.normals[i]).dot(p) >= 0)
-      continue;
-    points.push_back(p);
-    indices.push_back(static_cast<std::uint32_t>(i));
-  }
+  const std::vector<Facing> points = pointsFacing(model, T_camera_object.cast<float>());
   if (points.empty())
     return {};
   // Cells wide enough that a closed surface leaves none empty.
   const auto size = static_cast<float>(1.6 * model.parameters.surface_spacing);
   const DepthCells nearest(points, size / static_cast<float>((T_camera_object * model.center).z()));
   SurfaceIndices visible;
-  for (std::size_t i = 0; i < points.size(); ++i)
+  visible.reserve(points.size());
+  for (const Facing& point : points)
   {
-    const Eigen::Vector3f normal = T.linear() * model.surface.normals[indices[i]];
-    const float cosine = std::max(0.25f, -normal.dot(points[i]) / points[i].norm());
     // Within a cell a tilted surface spans this much depth by itself.
+    const float cosine = std::max(0.25f, point.cosine);
     const float slope = size * std::sqrt(1 - cosine * cosine) / cosine;
-    if (points[i].z() <= nearest.at(points[i]) + 0.5f * size + 1.5f * slope)
-      visible.push_back(indices[i]);
+    if (point.depth <= nearest.at(point) + 0.5f * size + 1.5f * slope)
+      visible.push_back(point.index);
   }
   return visible;
 }
