@@ -65,12 +65,14 @@ Pose polish(const Pose& T_camera_object, const PreparedScene& scene, const Train
   return icpOnField(T_camera_object, ICP_PIXELS, scene, model, icp);
 }
 
-/// Neither finer refinement nor another turn would save this pose.
+/// Neither finer refinement nor another turn would save this pose. A turn may bring much of the surface to where it
+/// explains the scene, but hardly shows more of it.
 bool isHopeless(const PoseEvidence& evidence, const VerificationParameters& parameters)
 {
-  constexpr double SHARE = 0.5;  // of what is asked for
-  return evidence.inlierShare(parameters.unmeasured_weight) < SHARE * parameters.min_inlier_share ||
-         evidence.visibleFraction() < SHARE * parameters.min_visible_fraction;
+  constexpr double INLIER_SHARE = 0.6;  // of what is asked for
+  constexpr double VISIBLE_SHARE = 0.85;
+  return evidence.inlierShare(parameters.unmeasured_weight) < INLIER_SHARE * parameters.min_inlier_share ||
+         evidence.visibleFraction() < VISIBLE_SHARE * parameters.min_visible_fraction;
 }
 
 /// The first criterion that fails is the reason of the rejection.
