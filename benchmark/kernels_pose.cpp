@@ -26,8 +26,8 @@ void forEachPose(benchmark::State& state, const Work& work)
 Pose refined(const Pose& T_camera_object)
 {
   const Workbench& bench = workbench();
-  return icpProjective(bench.model->surface, facingPoints(*bench.model, T_camera_object, ICP_POINTS), bench.scene.grid, bench.scene.normals,
-                       T_camera_object, bench.model->parameters.leaf, bench.parameters.icp)
+  return icpProjective(bench.model->surface, facingPoints(*bench.model, T_camera_object, ICP_POINTS), bench.scene.grid,
+                       bench.scene.normals, T_camera_object, bench.model->parameters.leaf, bench.parameters.icp)
       .T_camera_object;
 }
 
@@ -91,7 +91,8 @@ void rivals(benchmark::State& state)
   std::size_t k = 0;
   forEachPose(state, [&](const Pose&) {
     benchmark::DoNotOptimize(chooseAmongRivals(*bench.model, settled[k++ % settled.size()], bench.scene.grid,
-                                               bench.scene.surroundings, bench.tolerance));
+                                               bench.scene.surroundings, bench.tolerance,
+                                               bench.parameters.verification.min_turn_margin));
   });
 }
 BENCHMARK(rivals)->Unit(benchmark::kMillisecond);

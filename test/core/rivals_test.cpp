@@ -118,7 +118,7 @@ struct ShaftView
 
   RivalChoice choose(double given) const
   {
-    return chooseAmongRivals(shaft(), poseAt(given), grid, surroundings, TOLERANCE);
+    return chooseAmongRivals(shaft(), poseAt(given), grid, surroundings, TOLERANCE, SURE);
   }
 
   Pose truth;
@@ -176,7 +176,8 @@ TEST(Rivals, WithoutNearSymmetriesThereIsNothingToChoose)
   TrainedModel alone = shaft();
   alone.near_symmetries.clear();
   const ShaftView view(0);
-  const RivalChoice choice = chooseAmongRivals(alone, ShaftView::poseAt(1), view.grid, view.surroundings, TOLERANCE);
+  const RivalChoice choice =
+      chooseAmongRivals(alone, ShaftView::poseAt(1), view.grid, view.surroundings, TOLERANCE, SURE);
   EXPECT_FALSE(choice.turned);
   EXPECT_TRUE(std::isinf(choice.margin));
 }
