@@ -78,10 +78,10 @@ void printOpenTurns(std::ostream& out, const EvaluationFigures& f)
 {
   if (f.undetermined.total == 0)
     return;
-  const std::string part = f.part.empty() ? "all" : f.part;
-  printRatio(out, part + ": right, but a turn is open", f.undetermined);
+  out << (f.part.empty() ? "  all" : "  " + f.part) << ", some of whose poses leave a turn open\n";
+  printRatio(out, "  right, of those with an open turn", f.undetermined);
   for (const RecallAtLevel& recall : f.recall)
-    printRatio(out, part + ": found" + levelName(recall.level) + " with turn", recall.turn_known);
+    printRatio(out, "  found with their turn, " + levelName(recall.level), recall.turn_known);
 }
 
 void printSpread(std::ostream& out, const std::string& name, const Spread& spread, double scale,
