@@ -233,23 +233,23 @@ private:
 
   void writeDefinitions()
   {
-    out_
-        << "<h2>What the figures mean</h2>\n<dl>\n<dt>right</dt><dd>No point of the part is off by "
-        << percent(report_.parameters.max_error_share)
-        << " of its diameter or more (MSSD, symmetry considered). Best score first, each pose takes the nearest free "
-           "part of its kind; a second one there is a duplicate, and wrong.</dd>\n"
-        << "<dt>open turn</dt><dd>A pose may say that a turn about an axis is not known. It is right if it is so after "
-           "the turn that fits best, and counts so in every figure but those of parts found with their turn.</dd>\n"
-        << "<dt>right, but hidden</dt><dd>The part is less than " << levelText(lowest_level_)
-        << " visible: nobody asks for it. Counts as right among the poses returned, and not at all in the average "
-           "precision.</dd>\n"
-        << "<dt>right of first k</dt><dd>Over scenes in which a part is visible enough. Where nothing was returned, "
-           "that "
-           "is one miss.</dd>\n"
-        << "<dt>average precision</dt><dd>Area under the precision over the recall, scores pooled over all "
-           "scenes.</dd>\n"
-        << "<dt>95 % sure</dt><dd>Wilson interval: where the true share lies, given how few were "
-           "counted.</dd>\n</dl>\n";
+    out_ << "<h2>What the figures mean</h2>\n<dl>\n<dt>right</dt><dd>No point of the part is off by "
+         << percent(report_.parameters.max_error_share)
+         << " of its diameter or more (MSSD, symmetry considered). Best score first, each pose takes the nearest free "
+            "part of its kind; a second one there is a duplicate, and wrong.</dd>\n"
+         << "<dt>open turn</dt><dd>A pose may say that its turn about an axis is not known. It is right if it is so "
+            "after the turn that fits best, and counts so in every figure but those of parts found with their "
+            "turn.</dd>\n"
+         << "<dt>right, but hidden</dt><dd>The part is less than " << levelText(lowest_level_)
+         << " visible: nobody asks for it. Counts as right among the poses returned, and not at all in the average "
+            "precision.</dd>\n"
+         << "<dt>right of first k</dt><dd>Over scenes in which a part is visible enough. Where nothing was returned, "
+            "that "
+            "is one miss.</dd>\n"
+         << "<dt>average precision</dt><dd>Area under the precision over the recall, scores pooled over all "
+            "scenes.</dd>\n"
+         << "<dt>95 % sure</dt><dd>Wilson interval: where the true share lies, given how few were "
+            "counted.</dd>\n</dl>\n";
   }
 
   const EvaluationReport& report_;
