@@ -91,7 +91,8 @@ void rivals(benchmark::State& state)
   std::size_t k = 0;
   forEachPose(state, [&](const Pose&) {
     benchmark::DoNotOptimize(chooseAmongRivals(*bench.model, settled[k++ % settled.size()], bench.scene.grid,
-                                               bench.scene.surroundings, bench.tolerance));
+                                               bench.scene.surroundings, bench.tolerance,
+                                               bench.parameters.verification.min_turn_margin));
   });
 }
 BENCHMARK(rivals)->Unit(benchmark::kMillisecond);

@@ -59,9 +59,10 @@ class Detector:
         rospy.wait_for_service(service, timeout=START_TIME)
         self._get_best_grasp = rospy.ServiceProxy(service, GetBestGrasp)
 
-    def ask(self, frame):
+    def ask(self, frame, accept_undetermined_turn=False):
         """The answer for a cloud exposed from now on, with all poses in the frame."""
-        request = GetBestGraspRequest(acquisition=GetBestGraspRequest.WAIT_NEW, output_frame=frame)
+        request = GetBestGraspRequest(acquisition=GetBestGraspRequest.WAIT_NEW, output_frame=frame,
+                                      accept_undetermined_turn=accept_undetermined_turn)
         response = self._get_best_grasp(request)
         end = rospy.get_time() + TRAINING_TIME
         while response.code.value == ReturnCode.NOT_READY and rospy.get_time() < end and not rospy.is_shutdown():

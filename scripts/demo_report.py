@@ -13,16 +13,16 @@ import numpy
 import rospy
 
 from demo_client import Detector, Truth, pose_matrix
-from part_symmetry import load_symmetries, pose_error
+from part_symmetry import load_symmetries, pose_error, with_turn
 
 MAX_TRANSLATION = 0.005        # metres
 MAX_ROTATION = numpy.radians(5)
 VISIBLE = 0.5                  # parts hidden more than this are no fair target
 
 
-def nearest_instance(part, estimate, instances, groups):
+def nearest_instance(part, estimate, instances, group):
     """Index of the true part of this kind that is nearest, and its error; None where there is none."""
-    errors = {index: pose_error(estimate, pose_matrix(instance.pose), groups[part])
+    errors = {index: pose_error(estimate, pose_matrix(instance.pose), group)
               for index, instance in enumerate(instances) if instance.part == part}
     if not errors:
         return None, (numpy.inf, numpy.pi)
@@ -38,13 +38,16 @@ def print_detections(detections, instances, groups):
     found = set()
     print("\nrank  score  matching  nearest true part       translation    rotation")
     for rank, detection in enumerate(detections):
-        index, error = nearest_instance(detection.part, pose_matrix(detection.pose), instances, groups)
+        # What a detection leaves open is no error of it.
+        group = with_turn(groups[detection.part], detection)
+        index, error = nearest_instance(detection.part, pose_matrix(detection.pose), instances, group)
         if is_right(error):
             found.add(index)
         visible = 100 * instances[index].visible_fraction if index is not None else 0
         name = f"{instances[index].id:3} ({visible:3.0f} % visible)" if index is not None else "none of its kind"
+        open_turn = "  turn open" if detection.undetermined_turn else ""
         print(f"{rank:4}  {detection.score:5.2f}  {100 * detection.matching_rate:6.1f} %  {name:20}"
-              f"  {1000 * error[0]:8.2f} mm  {numpy.degrees(error[1]):6.2f} deg{'' if is_right(error) else '  wrong'}")
+              f"  {1000 * error[0]:8.2f} mm  {numpy.degrees(error[1]):6.2f} deg{'' if is_right(error) else '  wrong'}{open_turn}")
     fair = {i for i, instance in enumerate(instances) if instance.visible_fraction > VISIBLE}
     print(f"\n{len(fair & found)} of the {len(fair)} parts that are more than {100 * VISIBLE:.0f} % visible are found;"
           f" {len(detections)} detections, {len(found)} different parts right")
@@ -63,7 +66,7 @@ def report(response, instances, groups):
 
     best = response.grasps[0]
     T_camera_object = pose_matrix(best.grasp) @ pose_matrix(best.object_in_tip)
-    index, error = nearest_instance(best.part, T_camera_object, instances, groups)
+    index, error = nearest_instance(best.part, T_camera_object, instances, groups[best.part])
     p = best.grasp.position
     print(f"\nbest of {len(response.grasps)} grasps: {best.grasp_id} at [{p.x:.4f}, {p.y:.4f}, {p.z:.4f}] m in"
           f" {best.header.frame_id}, quality {best.quality:.2f}, tilt {numpy.degrees(best.tilt):.1f} deg,"

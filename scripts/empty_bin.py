@@ -43,7 +43,7 @@ class ByDetector:
         self._detector = Detector(detector)
 
     def choose(self, rank):
-        response = self._detector.ask(self._frame)
+        response = self._detector.ask(self._frame, accept_undetermined_turn=True)  # out is out, however turned
         candidates = {}  # each detection once, those with a grasp first
         for grasp in response.grasps:
             candidates.setdefault(grasp.detection_index, f"grasp {grasp.grasp_id}, quality {grasp.quality:.2f}")

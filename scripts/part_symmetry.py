@@ -52,6 +52,18 @@ def load_symmetries(part_dirs):
     return groups
 
 
+def with_turn(group, detection):
+    """The group, extended by the turn about an axis that a detection leaves open."""
+    if not detection.undetermined_turn:
+        return group
+    axis, origin = ([getattr(vector, k) for k in "xyz"] for vector in (detection.turn_axis, detection.turn_origin))
+    angles = [0, *detection.turn_angles] if detection.turn_angles else \
+        numpy.arange(CONTINUOUS_STEPS) * 2 * numpy.pi / CONTINUOUS_STEPS
+    turns = [rotation_about(axis, angle, numpy.array(origin)) for angle in angles]
+    # pose_error() moves the truth: a true pose is the estimate, turned, then one of the group; and back.
+    return numpy.array([element @ numpy.linalg.inv(turn) for turn in turns for element in group])
+
+
 def pose_error(estimate, truth, group):
     """(translation, rotation) to the symmetric equivalent of the truth that is nearest in rotation."""
     equivalents = truth @ group

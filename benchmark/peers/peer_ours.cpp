@@ -22,6 +22,7 @@ public:
     model_points_ = static_cast<int>(trained->points.size());
     DetectorParameters parameters = DetectorParameters::preset("fast");
     parameters.num_threads = 1;
+    parameters.verification.accept_undetermined_turns = false;  // poses are held against the truth in full
     detector_ = std::make_unique<Detector>(std::vector<std::shared_ptr<const TrainedModel>>{trained}, parameters);
   }
 

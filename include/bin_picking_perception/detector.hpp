@@ -11,6 +11,7 @@
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/detector_parameters.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
+#include "bin_picking_perception/model/undetermined_turn.hpp"
 #include "bin_picking_perception/scene/bin.hpp"
 #include "bin_picking_perception/scene/depth_grid.hpp"
 
@@ -47,6 +48,8 @@ struct Detection
   double votes = 0;                 ///< of its cluster
   std::vector<Criterion> criteria;  ///< every test with its threshold
   std::string rejection;            ///< empty: accepted; else one sentence
+  /// What the view leaves open of the pose, and its score does not count; nothing: the pose is known in full.
+  std::optional<UndeterminedTurn> undetermined_turn;
 };
 
 enum class DetectionCode

@@ -166,6 +166,7 @@ DetectorNode::Response DetectorNode::answer(const Request& request, Job& job)
   PickRequest pick;
   pick.parts = request.part_ids;
   pick.max_grasps = request.max_grasps;
+  pick.accept_undetermined_turn = request.accept_undetermined_turn;
   return toResponse(process(*pipeline, std::move(pick), output, job), output);
 }
 

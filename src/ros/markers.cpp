@@ -78,7 +78,7 @@ Marker MarkerMaker::labelMarker(std::size_t rank, const bin_picking::Detection& 
   marker.color = toColor({1.0f, 1.0f, 1.0f}, 1.0f);
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%zu: %.2f", rank, detection.score);
-  marker.text = text.data();
+  marker.text = std::string(text.data()) + (detection.undetermined_turn ? ", turn open" : "");
   return marker;
 }
 

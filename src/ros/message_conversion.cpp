@@ -26,6 +26,19 @@ msgs::Criterion toMessage(const bin_picking::Criterion& criterion)
   return message;
 }
 
+void setTurn(const bin_picking::UndeterminedTurn& turn, msgs::Detection& message)
+{
+  message.undetermined_turn = true;
+  message.turn = bin_picking::describe(turn);
+  message.turn_origin.x = turn.axis.origin.x();
+  message.turn_origin.y = turn.axis.origin.y();
+  message.turn_origin.z = turn.axis.origin.z();
+  message.turn_axis.x = turn.axis.direction.x();
+  message.turn_axis.y = turn.axis.direction.y();
+  message.turn_axis.z = turn.axis.direction.z();
+  message.turn_angles = turn.angles;
+}
+
 msgs::Detection toMessage(const bin_picking::Detection& detection, const OutputFrame& output)
 {
   msgs::Detection message;
@@ -41,6 +54,8 @@ msgs::Detection toMessage(const bin_picking::Detection& detection, const OutputF
   message.rejection = detection.rejection;
   for (const bin_picking::Criterion& criterion : detection.criteria)
     message.criteria.push_back(toMessage(criterion));
+  if (detection.undetermined_turn)
+    setTurn(*detection.undetermined_turn, message);
   return message;
 }
 
@@ -56,6 +71,7 @@ msgs::Grasp toMessage(const bin_picking::Grasp& grasp, const OutputFrame& output
   message.grasp = toPoseMessage(output.T_output_camera * grasp.T_camera_grasp);
   message.retreat = toPoseMessage(output.T_output_camera * grasp.T_camera_retreat);
   message.object_in_tip = toPoseMessage(grasp.T_tip_object);
+  message.undetermined_turn = grasp.undetermined_turn;
   message.width = grasp.width;
   message.opening = grasp.opening;
   message.priority = grasp.priority;

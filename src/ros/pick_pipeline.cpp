@@ -92,7 +92,7 @@ PickResult PickPipeline::run(const sensor_msgs::PointCloud2& cloud, const PickRe
     grasping.max_grasps = static_cast<int>(std::min(request.max_grasps, static_cast<std::size_t>(grasping.max_grasps)));
   result.selection = timed("grasp selection", timing, [&] {
     return bin_picking::selectGrasps(result.detection.detections, setup_.parts, setup_.gripper,
-                                     request.bin ? &*request.bin : nullptr, grasping);
+                                     request.bin ? &*request.bin : nullptr, grasping, request.accept_undetermined_turn);
   });
   result.detection.timing = std::move(timing);
   result.detection.total_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -134,7 +134,7 @@ JudgedScene runDetector(const Detector& detector, const EvaluationScene& scene, 
     runs.push_back({result.total_seconds, result.timing, result.counts});
     estimates.clear();  // every run finds the same
     for (const Detection& detection : result.detections)
-      estimates.push_back({detection.part, detection.T_camera_object, detection.score});
+      estimates.push_back({detection.part, detection.T_camera_object, detection.score, detection.undetermined_turn});
   }
   JudgedScene judged = judgeScene(scene, estimates, shapes, parameters);
   judged.runs = runs;

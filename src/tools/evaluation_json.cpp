@@ -38,6 +38,7 @@ Json figuresJson(const EvaluationFigures& f)
                {"duplicates", f.duplicates},
                {"wrong", f.wrong},
                {"precision", ratioJson(f.precision)},
+               {"undetermined_turns", ratioJson(f.undetermined)},
                {"recall", Json::array()},
                {"precision_of_first", Json::array()},
                {"average_precision", nullptr}};
@@ -45,6 +46,7 @@ Json figuresJson(const EvaluationFigures& f)
   {
     json["recall"].push_back(ratioJson(recall.ratio));
     json["recall"].back()["visible_fraction"] = recall.level;
+    json["recall"].back()["turn_known"] = ratioJson(recall.turn_known);
   }
   for (const FirstPrecision& first : f.first)
   {
@@ -71,6 +73,8 @@ Json estimateJson(const JudgedScene& scene, std::size_t index)
                {"verdict", toString(judged.verdict)},
                {"text", verdictText(scene, index)},
                {"instance", nullptr}};
+  if (judged.estimate.undetermined_turn)
+    json["undetermined_turn"] = toJson(*judged.estimate.undetermined_turn);
   if (!judged.instance)
     return json;
   json["instance"] = *judged.instance;

@@ -73,6 +73,17 @@ void printRatio(std::ostream& out, const std::string& name, const Ratio& ratio)
       << fixed(100 * interval.high, 0) << " %\n";
 }
 
+/// Parts whose poses leave a turn open: how many do, and what is found without them.
+void printOpenTurns(std::ostream& out, const EvaluationFigures& f)
+{
+  if (f.undetermined.total == 0)
+    return;
+  out << (f.part.empty() ? "  all" : "  " + f.part) << ", some of whose poses leave a turn open\n";
+  printRatio(out, "  right, of those with an open turn", f.undetermined);
+  for (const RecallAtLevel& recall : f.recall)
+    printRatio(out, "  found with their turn, " + levelName(recall.level), recall.turn_known);
+}
+
 void printSpread(std::ostream& out, const std::string& name, const Spread& spread, double scale,
                  const std::string& unit)
 {
@@ -96,6 +107,10 @@ void print(std::ostream& out, const EvaluationSummary& summary)
   for (const RecallAtLevel& recall : all.recall)
     printRatio(out, "found, of those " + levelName(recall.level) + " visible", recall.ratio);
   printRatio(out, "right, of all poses returned", all.precision);
+  for (const EvaluationFigures& part : summary.parts)
+    printOpenTurns(out, part);
+  if (summary.parts.size() > 1)
+    printOpenTurns(out, all);
   printRatio(out, "empty bins with a false find", all.empty_scenes);
   printSpread(out, "off in position, median", all.translation, 1000, "mm");
   printSpread(out, "off in rotation, median", all.rotation, DEGREES, "deg");

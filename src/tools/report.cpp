@@ -34,6 +34,8 @@ Json detectionJson(const Detection& detection)
                                 {"passed", criterion.passed()}});
   if (!detection.rejection.empty())
     json["rejection"] = detection.rejection;
+  if (detection.undetermined_turn)
+    json["undetermined_turn"] = toJson(*detection.undetermined_turn);
   return json;
 }
 
@@ -54,6 +56,9 @@ void printDetections(std::ostream& out, const std::vector<Detection>& detections
       out << std::setw(axis == 0 ? 8 : 9) << fixed(d.T_camera_object.translation()[axis] * 1000, 1);
     out << "\n";
   }
+  for (std::size_t k = 0; k < detections.size(); ++k)
+    if (detections[k].undetermined_turn)
+      out << "  #" << k + 1 << ": " << describe(*detections[k].undetermined_turn) << "\n";
 }
 }  // namespace
 
@@ -63,6 +68,15 @@ nlohmann::json toJson(const Pose& T)
   for (int row = 0; row < 4; ++row)
     rows.push_back({T(row, 0), T(row, 1), T(row, 2), T(row, 3)});
   return rows;
+}
+
+nlohmann::json toJson(const UndeterminedTurn& turn)
+{
+  const auto vector = [](const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); };
+  return {{"axis", {{"direction", vector(turn.axis.direction)}, {"origin", vector(turn.axis.origin)}}},
+          {"angles", turn.angles},
+          {"deviation", turn.deviation},
+          {"text", describe(turn)}};
 }
 
 nlohmann::json toJson(const DetectionResult& result)

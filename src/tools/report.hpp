@@ -13,6 +13,8 @@ namespace bin_picking::tools
 /// T as four rows of four numbers, metres.
 nlohmann::json toJson(const Pose& T);
 
+nlohmann::json toJson(const UndeterminedTurn& turn);
+
 /// The form that other programs read. Files and their loading times are for the caller to add.
 nlohmann::json toJson(const DetectionResult& result);
 

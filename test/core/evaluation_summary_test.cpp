@@ -89,6 +89,24 @@ TEST(Summary, HitsOnHiddenPartsAreTrueButNotAskedFor)
   EXPECT_DOUBLE_EQ(f.average_precision.value(), 1) << "neither right nor wrong";
 }
 
+TEST(Summary, RecallIsToldWithAndWithoutPosesThatLeaveATurnOpen)
+{
+  PoseEstimate open = bar(0, 0.9);
+  open.T_camera_object = open.T_camera_object * Eigen::AngleAxisd(1, Eigen::Vector3d::UnitX());
+  open.undetermined_turn = UndeterminedTurn{{Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero()}, {}, 0.001};
+  PoseEstimate off = open;
+  off.T_camera_object = Eigen::Translation3d(0, 0.05, 0) * off.T_camera_object;
+  off.score = 0.5;
+  const EvaluationFigures f = figuresOf({judge(sceneOfBars({1, 1, 0.6}), {open, bar(1, 0.8), off})});
+  expectRatio(f.recall[0].ratio, 2, 3);
+  expectRatio(f.recall[0].turn_known, 1, 3);
+  expectRatio(f.recall[1].ratio, 2, 2);
+  expectRatio(f.recall[1].turn_known, 1, 2);
+  expectRatio(f.undetermined, 1, 2);
+  expectRatio(f.precision, 2, 3);
+  EXPECT_NEAR(f.average_precision.value(), 2.0 / 3, 1e-12);
+}
+
 TEST(Summary, EmptyBinsCountWhatIsFoundInThem)
 {
   const EvaluationFigures f =

@@ -304,6 +304,29 @@ TEST(GraspSelection, TheWayInIsCheckedAndNotOnlyItsEnds)
   EXPECT_EQ(selectGrasps({detection}, {part}, gripper, &bin, parameters).grasps.size(), 1u);
 }
 
+TEST(GraspSelection, AnOpenTurnIsRefusedUnlessTheCallerAcceptsIt)
+{
+  Detection open = detectionAt({-0.05, 0, 0.05});
+  open.undetermined_turn = UndeterminedTurn{{Vector3d::UnitZ(), Vector3d::Zero()}, {}, 0.002};
+  const std::vector<Detection> detections = {open, detectionAt({0.05, 0, 0.05})};
+  PartDefinition part = partWith({graspFromAbove("top")});
+  part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, Vector3d::UnitZ()));
+  const GraspSelection careful = selectInBin(detections, part);
+  ASSERT_EQ(careful.rejected.size(), 1u) << "once for all its symmetric copies";
+  EXPECT_EQ(careful.rejected[0].rejection, GraspRejection::UndeterminedTurn);
+  EXPECT_EQ(careful.rejected[0].detection_index, 0u);
+  EXPECT_NE(careful.rejected[0].reason.find("its turn about the axis z"), std::string::npos);
+  for (const Grasp& grasp : careful.grasps)
+    EXPECT_TRUE(grasp.detection_index == 1 && !grasp.undetermined_turn);
+
+  const Bin bin = binBelowCamera();
+  const GraspSelection all = selectGrasps(detections, {part}, twoFingerGripper(), &bin, {}, true);
+  EXPECT_TRUE(all.rejected.empty());
+  ASSERT_EQ(all.grasps.size(), 4u);
+  for (const Grasp& grasp : all.grasps)
+    EXPECT_EQ(grasp.undetermined_turn, grasp.detection_index == 0);
+}
+
 TEST(GraspSelection, AnOpeningBeyondTheGripperIsRefused)
 {
   PartDefinition part = partWith({graspFromAbove("fits"), graspFromAbove("too_wide")});

@@ -139,6 +139,16 @@ TEST(HtmlReport, SaysWhatIsRightWrongAndMissed)
   EXPECT_EQ(count(page, "class=\"mark-missed\""), 2u);
 }
 
+TEST(HtmlReport, ShowsOpenTurnsOnlyWhereThereAreSome)
+{
+  PoseEstimate open = shifted(0, 0.9);
+  EXPECT_EQ(htmlReport(report({judged("known", {open})})).find("Found with their turn"), std::string::npos);
+  open.undetermined_turn = UndeterminedTurn{{Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero()}, {}, 0.001};
+  const std::string page = htmlReport(report({judged("open", {open}), judged("known", {shifted(0, 0.9)})}));
+  expectWords(page, {"Right, of poses with an open turn", "Found with their turn, of those 85 % visible",
+                     "#1 right up to its turn: 0.00 mm", "1 of 2 ("});
+}
+
 TEST(HtmlReport, EverySceneHasItsPicture)
 {
   EvaluationReport incomplete = report({judged("one", {})});

@@ -43,7 +43,7 @@ TrainedModel someModel()
   const Symmetry::Axis axis{Eigen::Vector3d::UnitY(), Eigen::Vector3d(0.01, 0, 0.02)};
   model.near_crease.assign(model.surface.size(), 0);
   model.near_crease[2] = 1;
-  model.near_symmetries = {{rotationAbout(axis, 0.5), axis, 0.125}};
+  model.near_symmetries = {{rotationAbout(axis, 0.5), axis, 0.125, 0.004, true, false}};
   return model;
 }
 
@@ -122,6 +122,9 @@ TEST(ModelFile, roundTripKeepsEveryField)
   EXPECT_EQ(loaded->near_symmetries[0].axis.direction, saved.near_symmetries[0].axis.direction);
   EXPECT_EQ(loaded->near_symmetries[0].axis.origin, saved.near_symmetries[0].axis.origin);
   EXPECT_EQ(loaded->near_symmetries[0].broken, saved.near_symmetries[0].broken);
+  EXPECT_EQ(loaded->near_symmetries[0].deviation, saved.near_symmetries[0].deviation);
+  EXPECT_TRUE(loaded->near_symmetries[0].slight);
+  EXPECT_FALSE(loaded->near_symmetries[0].slight_all_around);
 }
 
 TEST(ModelFile, savingAgainGivesTheSameBytesAndNothingElse)

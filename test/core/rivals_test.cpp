@@ -8,7 +8,9 @@
 #include <cmath>
 
 #include "bin_picking_perception/model/depth_renderer.hpp"
+#include "bin_picking_perception/model/slight_turn.hpp"
 #include "bin_picking_perception/refinement/verification.hpp"
+#include "core/shaft_scene.hpp"
 
 namespace bin_picking
 {
@@ -17,16 +19,16 @@ namespace
 constexpr double DEGREE = M_PI / 180;
 constexpr double TOLERANCE = 0.0008;  // metres: what eight standard deviations of a good sensor are
 constexpr double SURE = 10;           // VerificationParameters::min_turn_margin
+constexpr double KEY_DEPTH = 0.005;   // metres: stepped_shaft.scad
 
-PartDefinition definitionOf(const std::string& part)
-{
-  return loadPart(std::string(BIN_PICKING_SOURCE_DIR) + "/config/parts/" + part);
-}
+using test::shaftPose;
+using test::turnBetween;
 
-const TrainedModel& shaft()
+const TrainedModel& shaft() { return *test::shaftModel(); }
+
+std::shared_ptr<const TrainedModel> trained(const std::string& part, const TrainingParameters& parameters = {})
 {
-  static const auto model = trainPart(definitionOf("stepped_shaft"), {}, Executor(2));
-  return *model;
+  return trainPart(loadPart(test::partFolder(part)), parameters, Executor(2));
 }
 
 OrientedPoints sphere(double radius)
@@ -70,9 +72,50 @@ TEST(NearSymmetry, AShaftIsNearlyABodyOfRevolutionAboutItsAxisAlone)
   EXPECT_EQ(about_axis, shaft().near_symmetries.size());
 }
 
+TEST(NearSymmetry, TheDepthOfTheKeywayIsItsDeviationAllAround)
+{
+  // Between samples, a surface seems farther by a part of their distance.
+  const double tolerance = shaft().parameters.surface_spacing / 4;
+  for (const NearSymmetry& near : shaft().near_symmetries)
+  {
+    EXPECT_TRUE(near.slight && near.slight_all_around);
+    EXPECT_LT(near.deviation, KEY_DEPTH + tolerance);
+    if (std::cos(angleAbout(near.axis, near.T_object_object)) < 0.9)  // else the keyway lies over itself in part
+    {
+      EXPECT_GT(near.deviation, KEY_DEPTH - tolerance);
+    }
+  }
+  EXPECT_EQ(slightTurn(shaft(), rotationAbout(shaft().near_symmetries[5].axis, 90 * DEGREE)),
+            &shaft().near_symmetries[5]);
+  EXPECT_EQ(slightTurn(shaft(), Pose::Identity()), nullptr);
+}
+
+TEST(NearSymmetry, BranchesRibsAndWallsAreNotSlight)
+{
+  for (const char* part : {"three_way_tube", "upright_column", "pipe_elbow", "l_bracket", "cast_handle"})
+    for (const NearSymmetry& near : trained(part)->near_symmetries)
+      EXPECT_FALSE(near.slight) << part << ", a turn that moves the surface by " << 1000 * near.deviation << " mm";
+  const auto bolt = trained("hex_bolt");
+  for (const NearSymmetry& near : bolt->near_symmetries)
+    if (std::abs(near.axis.direction.z()) > 0.999)
+    {
+      EXPECT_TRUE(near.slight_all_around) << "only the head is no body of revolution";
+    }
+}
+
+TEST(NearSymmetry, WhoNeedsTheTurnSaysThatNoneIsSlight)
+{
+  TrainingParameters parameters;
+  parameters.slight_deviation = 0;
+  const auto model = trained("stepped_shaft", parameters);
+  EXPECT_EQ(model->near_symmetries.size(), shaft().near_symmetries.size());
+  for (const NearSymmetry& near : model->near_symmetries)
+    EXPECT_FALSE(near.slight);
+}
+
 TEST(NearSymmetry, DeclaredTurnsAreNoRivals)
 {
-  const auto bolt = trainPart(definitionOf("hex_bolt"), {}, Executor(2));
+  const auto bolt = trained("hex_bolt");
   bool has_half_step = false;
   for (const NearSymmetry& near : bolt->near_symmetries)
   {
@@ -90,7 +133,7 @@ TEST(NearSymmetry, DeclaredTurnsAreNoRivals)
 /// camera.
 struct ShaftView
 {
-  explicit ShaftView(double turn) : truth(poseAt(turn))
+  explicit ShaftView(double turn) : truth(shaftPose(turn))
   {
     DepthRenderer renderer(480, 384, PinholeCamera{750, 750, 239.5, 191.5});
     renderer.draw(shaft().mesh, truth, 0);
@@ -106,30 +149,15 @@ struct ShaftView
       }
   }
 
-  static Pose poseAt(double turn)
+  RivalChoice choose(double given, const TrainedModel& model = shaft()) const
   {
-    Pose T = Pose::Identity();
-    T.linear().col(0) = -Eigen::Vector3d::UnitZ();  // the keyway's side, towards the camera
-    T.linear().col(2) = Eigen::Vector3d::UnitX();
-    T.linear().col(1) = T.linear().col(2).cross(T.linear().col(0));
-    T.translation() = Eigen::Vector3d(0, 0, 0.6) - T.linear() * shaft().center;
-    return T * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ());
-  }
-
-  RivalChoice choose(double given) const
-  {
-    return chooseAmongRivals(shaft(), poseAt(given), grid, surroundings, TOLERANCE);
+    return chooseAmongRivals(model, shaftPose(given), grid, surroundings, TOLERANCE, SURE);
   }
 
   Pose truth;
   DepthGrid grid;
   DepthGrid surroundings;
 };
-
-double turnBetween(const Pose& a, const Pose& b)
-{
-  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
-}
 
 TEST(Rivals, AKeywayInViewTurnsTheShaftTheRightWay)
 {
@@ -140,6 +168,7 @@ TEST(Rivals, AKeywayInViewTurnsTheShaftTheRightWay)
     EXPECT_TRUE(choice.turned);
     EXPECT_LT(turnBetween(choice.T_camera_object, view.truth), 5 * DEGREE) << "given " << off << " degrees off";
     EXPECT_GT(choice.margin, SURE);
+    EXPECT_FALSE(choice.undetermined_turn);
   }
 }
 
@@ -152,11 +181,63 @@ TEST(Rivals, ARightPoseIsKeptBitForBit)
   EXPECT_GT(choice.margin, SURE);
 }
 
-TEST(Rivals, AHiddenKeywayIsSaidToBeAmbiguous)
+TEST(Rivals, AHiddenKeywayLeavesTheTurnOpenAndNothingElse)
 {
   const ShaftView view(180 * DEGREE);
   for (const double given : {180.0, 150.0, 215.0})
-    EXPECT_LT(view.choose(given * DEGREE).margin, SURE) << given;
+  {
+    const RivalChoice choice = view.choose(given * DEGREE);
+    EXPECT_LT(choice.margin, SURE) << given;
+    EXPECT_TRUE(std::isinf(choice.margin_beyond_turn)) << "its turns are all that nearly keep a shaft";
+    ASSERT_TRUE(choice.undetermined_turn);
+    EXPECT_GT(choice.undetermined_turn->axis.direction.z(), 0.9999);
+    EXPECT_LT(choice.undetermined_turn->axis.origin.head<2>().norm(), 1e-4);
+    EXPECT_TRUE(choice.undetermined_turn->angles.empty()) << "any turn";
+    EXPECT_NEAR(choice.undetermined_turn->deviation, KEY_DEPTH, shaft().parameters.surface_spacing / 4);
+    EXPECT_LT(test::tiltBetween(choice.T_camera_object, view.truth), 1e-6);
+    const std::string text = describe(*choice.undetermined_turn);
+    EXPECT_EQ(text.find("its turn about the axis z through"), 0u) << text;
+  }
+}
+
+TEST(Rivals, OnlySlightTurnsMayBeLeftOpen)
+{
+  const ShaftView view(180 * DEGREE);
+  TrainedModel strict = shaft();
+  for (NearSymmetry& near : strict.near_symmetries)
+    near.slight = near.slight_all_around = false;
+  const RivalChoice ambiguous = view.choose(180 * DEGREE, strict);
+  EXPECT_FALSE(ambiguous.undetermined_turn);
+  EXPECT_LT(ambiguous.margin_beyond_turn, SURE);
+
+  // Were one of the turns no slight one, the pose would be ambiguous however slight the others are.
+  TrainedModel mixed = shaft();
+  for (NearSymmetry& near : mixed.near_symmetries)
+  {
+    near.slight_all_around = false;
+    near.slight = std::abs(angleAbout(near.axis, near.T_object_object) - 45 * DEGREE) > DEGREE;
+  }
+  EXPECT_LT(view.choose(180 * DEGREE, mixed).margin_beyond_turn, SURE);
+}
+
+TEST(Rivals, ASingleTurnIsLeftOpenAsSuch)
+{
+  const ShaftView view(180 * DEGREE);
+  TrainedModel single = shaft();  // as if it equalled itself, nearly, after these turns alone
+  single.near_symmetries.clear();
+  for (NearSymmetry near : shaft().near_symmetries)
+    if (const double angle = angleAbout(near.axis, near.T_object_object);
+        std::abs(std::cos(angle) - std::cos(45 * DEGREE)) < 0.01)
+    {
+      near.slight_all_around = false;
+      single.near_symmetries.push_back(near);
+    }
+  const RivalChoice choice = view.choose(180 * DEGREE, single);
+  ASSERT_TRUE(choice.undetermined_turn);
+  ASSERT_EQ(choice.undetermined_turn->angles.size(), 2u);
+  EXPECT_NEAR(choice.undetermined_turn->angles[0], 45 * DEGREE, 1e-9);
+  EXPECT_NEAR(choice.undetermined_turn->angles[1], 315 * DEGREE, 1e-9);
+  EXPECT_EQ(describe(*choice.undetermined_turn).find("it may as well be turned by 45 or 315 deg about the axis z"), 0u);
 }
 
 TEST(SurfaceShare, FallsWhereTheSceneHasAnotherShape)
@@ -176,7 +257,7 @@ TEST(Rivals, WithoutNearSymmetriesThereIsNothingToChoose)
   TrainedModel alone = shaft();
   alone.near_symmetries.clear();
   const ShaftView view(0);
-  const RivalChoice choice = chooseAmongRivals(alone, ShaftView::poseAt(1), view.grid, view.surroundings, TOLERANCE);
+  const RivalChoice choice = view.choose(1, alone);
   EXPECT_FALSE(choice.turned);
   EXPECT_TRUE(std::isinf(choice.margin));
 }

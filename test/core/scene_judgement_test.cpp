@@ -115,6 +115,45 @@ TEST(Judgement, ASymmetricEquivalentIsAsRight)
   EXPECT_EQ(verdictText(wrong, 0), "off by 0.0 mm, 180.0 deg");
 }
 
+/// The bar turned about its long axis, x, with what it says of that.
+PoseEstimate turnedBar(double angle, const std::optional<UndeterminedTurn>& says)
+{
+  PoseEstimate estimate = bar(0, 1);
+  estimate.T_camera_object = estimate.T_camera_object * Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX());
+  estimate.undetermined_turn = says;
+  return estimate;
+}
+
+UndeterminedTurn openTurn(const Eigen::Vector3d& axis, const std::vector<double>& angles = {})
+{
+  return {{axis, Eigen::Vector3d::Zero()}, angles, 0.001};
+}
+
+TEST(Judgement, AnOpenTurnIsNoErrorOfAPoseThatSaysSo)
+{
+  const auto verdictOf = [](double angle, const std::optional<UndeterminedTurn>& says) {
+    return judge(sceneOfBars({1}), {turnedBar(angle, says)}).estimates[0].verdict;
+  };
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
+  EXPECT_EQ(verdictOf(1, std::nullopt), Verdict::Wrong);
+  EXPECT_EQ(verdictOf(1, openTurn(x)), Verdict::Right);
+  EXPECT_EQ(verdictOf(1, openTurn(-x)), Verdict::Right);
+  EXPECT_EQ(verdictOf(M_PI + 1, openTurn(x)), Verdict::Right) << "turn and symmetry together";
+  EXPECT_EQ(verdictOf(1, openTurn(Eigen::Vector3d::UnitY())), Verdict::Wrong) << "it claims another axis";
+  EXPECT_EQ(verdictOf(1, openTurn(x, {0.5, 2 * M_PI - 1})), Verdict::Right);
+  EXPECT_EQ(verdictOf(1, openTurn(x, {0.5, 3})), Verdict::Wrong) << "of these turns none is the true one";
+  EXPECT_EQ(verdictOf(0, openTurn(x, {0.5, 3})), Verdict::Right) << "it may be right as it is";
+
+  const JudgedScene judged = judge(sceneOfBars({1}), {turnedBar(1, openTurn(x))});
+  EXPECT_NEAR(judged.estimates[0].max_distance, 0, 1e-8);
+  EXPECT_NEAR(judged.estimates[0].mean_distance, 0, 1e-6);
+  EXPECT_NEAR(judged.estimates[0].error.rotation, 0, 1e-7);
+  EXPECT_EQ(verdictText(judged, 0), "right up to its turn: 0.00 mm, 0.00 deg");
+  PoseEstimate aside = turnedBar(1, openTurn(x));
+  aside.T_camera_object = Eigen::Translation3d(0.005, 0, 0) * aside.T_camera_object;
+  EXPECT_NEAR(judge(sceneOfBars({1}), {aside}).estimates[0].max_distance, 0.005, 1e-8) << "all other errors count";
+}
+
 TEST(Judgement, ASecondHitIsADuplicate)
 {
   const JudgedScene judged = judge(sceneOfBars({1, 1}), {bar(0, 0.9, 0.004), bar(0, 0.8), bar(1, 0.7)});

@@ -56,13 +56,14 @@ inline TriangleMesh floorMesh()
   return floor;
 }
 
-/// What a camera with the given depth noise sees of tees above a floor.
-inline DepthGrid renderTees(const std::vector<Pose>& poses, double sigma, std::uint32_t seed = 1)
+/// What a camera with the given depth noise sees of parts above a floor.
+inline DepthGrid renderParts(const TriangleMesh& part, const std::vector<Pose>& poses, double sigma,
+                             std::uint32_t seed = 1)
 {
   DepthRenderer renderer(480, 384, smallCamera());
   renderer.draw(floorMesh(), Pose::Identity(), 0);
   for (std::size_t i = 0; i < poses.size(); ++i)
-    renderer.draw(teeModel()->mesh, poses[i], static_cast<std::int32_t>(i + 1));
+    renderer.draw(part, poses[i], static_cast<std::int32_t>(i + 1));
   DepthGrid grid = renderer.grid();
   std::mt19937 random(seed);
   for (std::size_t i = 0; i < grid.size(); ++i)
@@ -76,6 +77,11 @@ inline DepthGrid renderTees(const std::vector<Pose>& poses, double sigma, std::u
     grid.z[i] *= scale;
   }
   return grid;
+}
+
+inline DepthGrid renderTees(const std::vector<Pose>& poses, double sigma, std::uint32_t seed = 1)
+{
+  return renderParts(teeModel()->mesh, poses, sigma, seed);
 }
 
 /// The bin that the floor belongs to, wide enough for all.

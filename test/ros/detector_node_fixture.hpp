@@ -87,11 +87,16 @@ protected:
   /// Asks until the models are there.
   static GetBestGrasp::Response ask(GetBestGrasp::Request request = GetBestGrasp::Request())
   {
+    return ask(request, *client_);
+  }
+
+  static GetBestGrasp::Response ask(GetBestGrasp::Request request, ros::ServiceClient& client)
+  {
     GetBestGrasp::Response response;
-    EXPECT_TRUE(client_->waitForExistence(ros::Duration(PATIENCE)));
+    EXPECT_TRUE(client.waitForExistence(ros::Duration(PATIENCE)));
     const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(PATIENCE);
     do
-      EXPECT_TRUE(client_->call(request, response)) << "the call itself failed";
+      EXPECT_TRUE(client.call(request, response)) << "the call itself failed";
     while (response.code.value == ReturnCode::NOT_READY && ros::WallTime::now() < end);
     EXPECT_FALSE(response.code.name.empty());
     EXPECT_EQ(response.grasps.empty(), response.code.value != ReturnCode::OK);

@@ -225,6 +225,38 @@ TEST_F(DetectorNodeTest, ContinuousProcessingAndEndWhileACallWaits)
       << "the end of the node hangs behind a call";
 }
 
+TEST_F(DetectorNodeTest, GraspsOfAPartWhoseTurnIsOpenAreForThoseWhoAcceptThem)
+{
+  ros::NodeHandle nh("shafts");
+  ros::NodeHandle private_nh("shafts/detector");
+  setParameters(private_nh);
+  private_nh.setParam("parts",
+                      std::vector<std::string>{std::string(BIN_PICKING_SOURCE_DIR) + "/config/parts/stepped_shaft"});
+  DetectorNode node(nh, private_nh);
+  test_clouds::VirtualCamera camera(nh, "points");
+  camera.start(makeMessage(test_clouds::renderShaftFromBehind()));
+  ros::ServiceClient client = private_nh.serviceClient<GetBestGrasp>("get_best_grasp");
+  const auto careful = ask({}, client);
+  ASSERT_EQ(careful.code.value, ReturnCode::NO_PICKABLE) << careful.code.message;
+  ASSERT_FALSE(careful.detections.empty());
+  EXPECT_TRUE(careful.detections[0].accepted);
+  EXPECT_TRUE(careful.detections[0].undetermined_turn);
+  EXPECT_GT(careful.detections[0].turn_axis.z, 0.9999);
+  const auto reason = std::find_if(careful.rejected.begin(), careful.rejected.end(),
+                                   [](const auto& one) { return one.reason == "undetermined_turn"; });
+  ASSERT_NE(reason, careful.rejected.end());
+  EXPECT_EQ(reason->kind, "grasp");
+  EXPECT_EQ(reason->count, 7u) << "every grasp of its part.yaml";
+
+  GetBestGrasp::Request request;
+  request.accept_undetermined_turn = true;
+  const auto accepting = ask(request, client);
+  camera.stop();
+  ASSERT_EQ(accepting.code.value, ReturnCode::OK) << accepting.code.message;
+  for (const auto& grasp : accepting.grasps)
+    EXPECT_TRUE(grasp.undetermined_turn);
+}
+
 TEST_F(DetectorNodeTest, WrongParametersAreRefusedAtTheStart)
 {
   ros::NodeHandle nh("third");

@@ -43,12 +43,14 @@ PickResult someResult()
     (i < 2 ? result.detection.detections : result.detection.rejected).push_back(detection);
   }
   result.detection.rejected[0].rejection = "The matching rate is 0.3; at least 0.5 is needed.";
+  result.detection.detections[1].undetermined_turn = {{Eigen::Vector3d::UnitZ(), {0.01, 0.02, 0}}, {1.5, 3}, 0.004};
   result.detection.timing = {{"segmentation", 0.01}, {"matching", 0.2}};
   result.detection.total_seconds = 0.21;
   bin_picking::Grasp grasp;
   grasp.part = "block";
   grasp.grasp_id = "top";
   grasp.detection_index = 1;
+  grasp.undetermined_turn = true;
   grasp.T_camera_grasp = makePose(1.0, {0, 1, 0}, {0.1, 0.2, 0.75});
   grasp.T_camera_pre_grasp = grasp.T_camera_grasp * Eigen::Translation3d(0, 0, -0.08);
   grasp.opening = 0.05;
@@ -56,6 +58,8 @@ PickResult someResult()
   result.selection.grasps = {grasp};
   grasp.rejection = bin_picking::GraspRejection::TiltTooLarge;
   result.selection.rejected = {grasp, grasp};
+  grasp.rejection = bin_picking::GraspRejection::UndeterminedTurn;
+  result.selection.rejected.push_back(grasp);
   result.bin = bin_picking::Bin();
   result.bin->inner_size = {0.4, 0.3, 0.1};
   return result;
@@ -155,14 +159,30 @@ TEST(MessageConversion, ResponseHoldsEverythingInTheOutputFrame)
   // 80 mm back along the approach, in any frame
   const Pose T_grasp_pre = fromMessage(response.grasps[0].grasp).inverse() * fromMessage(response.grasps[0].pre_grasp);
   EXPECT_TRUE(T_grasp_pre.translation().isApprox(Eigen::Vector3d(0, 0, -0.08), 1e-9));
-  ASSERT_EQ(response.rejected.size(), 2u);
+  ASSERT_EQ(response.rejected.size(), 3u);
   EXPECT_EQ(response.rejected[0].kind, "grasp");
   EXPECT_EQ(response.rejected[0].count, 2u);
   EXPECT_EQ(response.rejected[1].reason, "matching_rate");
+  EXPECT_EQ(response.rejected[2].reason, "undetermined_turn");
   ASSERT_EQ(response.timing.size(), 3u);
   EXPECT_EQ(response.timing.back().stage, "total");
   EXPECT_DOUBLE_EQ(response.timing.back().seconds, 0.21);
   EXPECT_EQ(toPoseArray(result, output).poses.size(), 2u);
+}
+
+TEST(MessageConversion, AnOpenTurnIsToldInThePartsFrame)
+{
+  const auto response = toResponse(someResult(), someOutput());
+  EXPECT_FALSE(response.detections[0].undetermined_turn);
+  EXPECT_TRUE(response.detections[0].turn.empty());
+  const auto& open = response.detections[1];
+  EXPECT_TRUE(open.undetermined_turn);
+  EXPECT_EQ(open.turn.find("it may as well be turned by 86 or 172 deg about the axis z"), 0u) << open.turn;
+  EXPECT_EQ(open.turn_axis.z, 1.0);
+  EXPECT_EQ(open.turn_origin.x, 0.01);
+  EXPECT_EQ(open.turn_origin.y, 0.02);
+  EXPECT_EQ(open.turn_angles, (std::vector<double>{1.5, 3}));
+  EXPECT_TRUE(response.grasps[0].undetermined_turn);
 }
 
 TEST(Markers, ShowEveryDetectionInItsColour)
@@ -190,6 +210,10 @@ TEST(Markers, ShowEveryDetectionInItsColour)
     {
       EXPECT_EQ(markers[i].points.size(), 12u);
       EXPECT_EQ(markers[i].color.r, bin_picking::rankColor(static_cast<std::size_t>(markers[i].id)).x());
+    }
+    if (markers[i].ns == "labels")
+    {
+      EXPECT_EQ(markers[i].text, markers[i].id == 0 ? "0: 0.90" : "1: 0.80, turn open");
     }
     if (markers[i].ns == "gripper" && markers[i].id == 1)
     {

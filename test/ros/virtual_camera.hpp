@@ -17,6 +17,17 @@
 
 namespace test_clouds
 {
+/// 1 mm per pixel on the floor.
+inline bin_picking::PinholeCamera blockCamera() { return {600, 600, 199.5, 149.5}; }
+
+inline bin_picking::TriangleMesh floorMesh()
+{
+  bin_picking::TriangleMesh floor;
+  floor.vertices = {{-0.3f, -0.3f, 0.6f}, {0.3f, -0.3f, 0.6f}, {0.3f, 0.3f, 0.6f}, {-0.3f, 0.3f, 0.6f}};
+  floor.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return floor;
+}
+
 /// The step block of this folder on the floor of its bin, 0.6 m below the camera, seen without noise.
 struct BlockScene
 {
@@ -35,18 +46,28 @@ inline BlockScene renderBlock()
   scene.T_camera_block.translation() = Eigen::Vector3d(0.05, -0.04, 0.6);
   const std::string mesh_file = std::string(BIN_PICKING_SOURCE_DIR) + "/test/ros/step_block/step_block.obj";
   const auto block = bin_picking::loadMesh(mesh_file, bin_picking::LengthUnit::Millimetre);
-  bin_picking::TriangleMesh floor;
-  floor.vertices = {{-0.3f, -0.3f, 0.6f}, {0.3f, -0.3f, 0.6f}, {0.3f, 0.3f, 0.6f}, {-0.3f, 0.3f, 0.6f}};
-  floor.triangles = {{0, 1, 2}, {0, 2, 3}};
-  bin_picking::PinholeCamera camera;
-  camera.fx = camera.fy = 600;
-  camera.cx = 199.5;
-  camera.cy = 149.5;
-  bin_picking::DepthRenderer renderer(400, 300, camera);  // 1 mm per pixel on the floor
-  renderer.draw(floor, bin_picking::Pose::Identity(), 0);
+  bin_picking::DepthRenderer renderer(400, 300, blockCamera());
+  renderer.draw(floorMesh(), bin_picking::Pose::Identity(), 0);
   renderer.draw(block, scene.T_camera_block, 1);
   scene.grid = renderer.grid();
   return scene;
+}
+
+/// The shaft of the demo parts across the view, 50 mm above the same floor, its keyway below: nobody can see it.
+inline bin_picking::DepthGrid renderShaftFromBehind()
+{
+  bin_picking::Pose T_camera_shaft = bin_picking::Pose::Identity();
+  T_camera_shaft.linear().col(0) = Eigen::Vector3d::UnitZ();  // the keyway's side, away from the camera
+  T_camera_shaft.linear().col(2) = Eigen::Vector3d::UnitX();
+  T_camera_shaft.linear().col(1) = T_camera_shaft.linear().col(2).cross(T_camera_shaft.linear().col(0));
+  T_camera_shaft.translation() = Eigen::Vector3d(-0.06, 0, 0.55);
+  const auto shaft =
+      bin_picking::loadMesh(std::string(BIN_PICKING_SOURCE_DIR) + "/config/parts/stepped_shaft/stepped_shaft.stl",
+                            bin_picking::LengthUnit::Millimetre);
+  bin_picking::DepthRenderer renderer(400, 300, blockCamera());
+  renderer.draw(floorMesh(), bin_picking::Pose::Identity(), 0);
+  renderer.draw(shaft, T_camera_shaft, 1);
+  return renderer.grid();
 }
 
 /// Publishes a cloud again and again, each time with the present time, until it is told to stop.

@@ -16,6 +16,7 @@ struct RecallAtLevel
 {
   double level = 0;
   Ratio ratio;
+  Ratio turn_known = {};  ///< the same without those whose pose leaves a turn open
 };
 
 /// How many of the first so many detections of a scene are true.
@@ -38,6 +39,7 @@ struct EvaluationFigures
   int wrong = 0;
   std::vector<RecallAtLevel> recall;
   Ratio precision;                          ///< hits among all estimates
+  Ratio undetermined;                       ///< hits among the estimates that leave a turn open
   std::vector<FirstPrecision> first;        ///< 1, 3, 5; over scenes with a pickable instance
   std::optional<double> average_precision;  ///< of all: mean over the parts
   Ratio empty_scenes;                       ///< with a false detection, among scenes without an instance of the part

@@ -7,6 +7,7 @@
 
 #include "bin_picking_perception/common/oriented_points.hpp"
 #include "bin_picking_perception/model/part.hpp"
+#include "bin_picking_perception/model/undetermined_turn.hpp"
 
 namespace bin_picking
 {
@@ -39,4 +40,8 @@ double averageNearestDistance(const std::vector<Eigen::Vector3f>& points, const 
 /// one step
 double maximumSymmetryAwareDistance(const std::vector<Eigen::Vector3f>& points, const Pose& estimate, const Pose& truth,
                                     const Symmetry& symmetry, int steps = 360);
+
+/// The same for an estimate that leaves a turn open: minimised over that turn and the symmetry.
+double maximumSymmetryAwareDistance(const std::vector<Eigen::Vector3f>& points, const Pose& estimate, const Pose& truth,
+                                    const Symmetry& symmetry, const UndeterminedTurn& turn, int steps = 360);
 }  // namespace bin_picking

@@ -32,7 +32,8 @@ struct PoseEstimate
 {
   std::string part;
   Pose T_camera_object = Pose::Identity();
-  double score = 0;  ///< larger is better
+  double score = 0;                                                  ///< larger is better
+  std::optional<UndeterminedTurn> undetermined_turn = std::nullopt;  ///< what it says that it leaves open
 };
 
 enum class Verdict
@@ -82,12 +83,13 @@ std::vector<std::optional<std::size_t>> assignGreedily(const Eigen::MatrixXd& er
                                                        const std::vector<double>& limits);
 
 /// Holds estimates against the truth. An estimate hits an instance of its part if their MSSD is below max_error_share
-/// of the part's diameter; assigned by assignGreedily. \throws ParameterError a pose that is no rigid motion (a mirror
+/// of the part's diameter; assigned by assignGreedily. One that leaves a turn open claims no more than that: its errors
+/// are those of the turn that fits best. \throws ParameterError a pose that is no rigid motion (a mirror
 /// image, scaled, not finite), a score that is not a
 ///   number, a part that the scene does not search for, an instance without visible fraction
 JudgedScene judgeScene(const EvaluationScene& scene, const std::vector<PoseEstimate>& estimates,
                        const PartShapes& shapes, const EvaluationParameters& parameters);
 
-/// "right", "right, but hidden", "duplicate of #2", "off by 3.1 mm, 12.0 deg", "no part there".
+/// "right", "right up to its turn", "right, but hidden", "duplicate of #2", "off by 3.1 mm, 12.0 deg", "no part there".
 std::string verdictText(const JudgedScene& scene, std::size_t estimate);
 }  // namespace bin_picking

@@ -35,6 +35,7 @@ enum class GraspRejection
 {
   None,
   MatchingRateTooLow,
+  UndeterminedTurn,  ///< the turn of the part about an axis is not known, and the caller does not accept that
   TiltTooLarge,
   OpeningTooSmall,  ///< the gripper cannot open as far as the grasp asks
   BinWallCollision,
@@ -55,6 +56,7 @@ struct Grasp
   Pose T_camera_grasp = Pose::Identity();
   Pose T_camera_retreat = Pose::Identity();
   Pose T_tip_object = Pose::Identity();  ///< the part in the hand, for placing
+  bool undetermined_turn = false;        ///< up to the turn that the detection leaves open
   double width = 0;                      ///< metres, when holding
   double opening = 0;                    ///< metres, on the way in
   int priority = 0;
@@ -73,10 +75,12 @@ struct GraspSelection
 
 /// Expands the grasps of each detected part by its symmetry, checks and ranks them.
 /// Order: quality (to 1e-6), then the better detection, then the order in the part's definition, then the symmetry
-/// variant. A matching rate or an opening that rules out a grasp rules out all its symmetric copies: it is then listed
-/// once. \param parts definitions by name; a detection of a part without definition has no grasps \param bin nullptr:
-/// no wall check, tilt is measured against the camera's view direction \throws ParameterError a bin is given and the
-/// gripper has no boxes
+/// variant. A matching rate, an open turn or an opening that rules out a grasp rules out all its symmetric copies: it
+/// is then listed once. \param parts definitions by name; a detection of a part without definition has no grasps \param
+/// bin nullptr: no wall check, tilt is measured against the camera's view direction \param accept_undetermined_turn
+/// also of parts whose turn about an axis is not known: they are checked at the pose that the detection states, one of
+/// those that the part may have \throws ParameterError a bin is given and the gripper has no boxes
 GraspSelection selectGrasps(const std::vector<Detection>& detections, const std::vector<PartDefinition>& parts,
-                            const Gripper& gripper, const Bin* bin, const GraspParameters& parameters);
+                            const Gripper& gripper, const Bin* bin, const GraspParameters& parameters,
+                            bool accept_undetermined_turn = false);
 }  // namespace bin_picking

@@ -7,6 +7,7 @@
 #include "bin_picking_perception/common/oriented_points.hpp"
 #include "bin_picking_perception/model/distance_field.hpp"
 #include "bin_picking_perception/model/part.hpp"
+#include "bin_picking_perception/model/symmetry_search.hpp"
 
 namespace bin_picking
 {
@@ -17,10 +18,26 @@ struct NearSymmetry
   Pose T_object_object = Pose::Identity();
   Symmetry::Axis axis;  ///< of the turn
   double broken = 0;    ///< share of the surface that it moves off the surface, (0, 1)
+  /// Hausdorff distance of the surface from where it was, metres: the height of what tells the two apart.
+  double deviation = 0;
+  /// The deviation is within the limit, and the turn is truly another one: not a small one that slides along the
+  /// surface.
+  bool slight = false;
+  /// Every turn about the axis is slight or a symmetry: the part is a body of revolution but for something slight.
+  bool slight_all_around = false;
 };
+
+/// Of a turn about an axis of near symmetries: they come in steps of a turn / NEAR_SYMMETRY_STEPS.
+constexpr int NEAR_SYMMETRY_STEPS = 24;
 
 /// Turns about the box's and the principal axes that keep most of the surface. Declared symmetries are not among them.
 /// \param surface of the part, even. \param tolerance metres: what is moved off the surface by less counts as kept
+/// \param exact the same surface, for the deviation: the field is cut at its band
+/// \param slight_deviation metres: larger ones are not slight
 std::vector<NearSymmetry> findNearSymmetries(const OrientedPoints& surface, const DistanceField& field,
-                                             const Symmetry& declared, double tolerance);
+                                             const SelfComparison& exact, const Symmetry& declared, double tolerance,
+                                             double slight_deviation);
+
+/// Whether two axes are one line to within a length (metres), whatever their directions' signs.
+bool isSameLine(const Symmetry::Axis& a, const Symmetry::Axis& b, double tolerance);
 }  // namespace bin_picking

@@ -64,7 +64,7 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
 std::uint64_t requestHash(const PartDefinition& definition, const TrainingParameters& parameters);
 
 /// Version of the model file's layout; other versions are not read.
-constexpr std::uint32_t MODEL_FILE_VERSION = 3;
+constexpr std::uint32_t MODEL_FILE_VERSION = 4;
 
 /// Binary file: magic, version, hashes, payload, checksum. Written to a temporary name first, then renamed.
 /// \throws FileError cannot be written

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "bin_picking_perception/model/trained_model.hpp"
+#include "bin_picking_perception/model/undetermined_turn.hpp"
 #include "bin_picking_perception/scene/depth_grid.hpp"
 
 namespace bin_picking
@@ -18,13 +20,18 @@ struct RivalChoice
   /// tenth of the diameter) more than this one, in squares of a leaf's edge; infinity: there is none. Near 0 the view
   /// cannot tell.
   double margin = std::numeric_limits<double>::infinity();
+  /// Slight turns (slight_turn.hpp) about one axis that the view cannot tell from this pose; nothing if it can.
+  std::optional<UndeterminedTurn> undetermined_turn;
+  /// The margin against the rivals that these turns do not lead to; the same as `margin` if there are none.
+  double margin_beyond_turn = std::numeric_limits<double>::infinity();
 };
 
 /// \param T_camera_object refined
 /// \param tolerance of the distance to the surface, metres
+/// \param min_margin smaller ones cannot be told apart
 /// \param grid what belongs to parts; \param surroundings the same grid with the bin
 RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
-                              const DepthGrid& surroundings, double tolerance);
+                              const DepthGrid& surroundings, double tolerance, double min_margin);
 
 /// Of the measured points that lie near the part's surface at the pose, the share that lies on it; 0 if none is near. A
 /// part of another shape explains much of the surface it was laid on, but leaves points beside it.

@@ -27,6 +27,7 @@ struct VerificationParameters
   double max_violation_share = 0.2;
   double unmeasured_weight = 0.3;
   double min_turn_margin = 10;
+  bool accept_undetermined_turns = true;
   double min_surface_share = 0.75;
   double max_bin_penetration = 0.006;
   double overlap = 0.35;

@@ -100,14 +100,24 @@ void judge(Detection& detection, const PoseQuality& quality, const VerificationP
 }
 
 /// Of the poses that look much the same, the one that the scene contradicts least, polished.
+/// \param undetermined_turn what it leaves open. \param turn_margin against all others
 Pose settle(const Pose& rough, const PreparedScene& scene, const TrainedModel& model,
-            const DetectorParameters& parameters, double& turn_margin)
+            const DetectorParameters& parameters, std::optional<UndeterminedTurn>& undetermined_turn,
+            double& turn_margin)
 {
-  if (!parameters.verification.enabled)
+  const VerificationParameters& verification = parameters.verification;
+  if (!verification.enabled)
     return polish(rough, scene, model, parameters.icp);
-  const RivalChoice choice = chooseAmongRivals(model, rough, scene.grid, scene.surroundings,
-                                               depthTolerance(scene, model, parameters.verification));
+  const RivalChoice choice =
+      chooseAmongRivals(model, rough, scene.grid, scene.surroundings, depthTolerance(scene, model, verification),
+                        verification.min_turn_margin);
   turn_margin = choice.margin;
+  if (verification.accept_undetermined_turns && choice.undetermined_turn &&
+      choice.margin_beyond_turn >= verification.min_turn_margin)
+  {
+    undetermined_turn = choice.undetermined_turn;
+    turn_margin = choice.margin_beyond_turn;
+  }
   return polish(choice.T_camera_object, scene, model, parameters.icp);
 }
 
@@ -152,7 +162,7 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
       return assessed;
     }
   }
-  const Pose T = settle(rough, scene, model, parameters, quality.turn_margin);
+  const Pose T = settle(rough, scene, model, parameters, detection.undetermined_turn, quality.turn_margin);
   detection.T_camera_object = T;
   const SurfaceIndices visible = visiblePoints(model, T);
   const PoseEvidence evidence = evidenceAt(T, thinned(visible, TEST_POINTS), scene, model, verification);

@@ -16,6 +16,9 @@ std::string failureText(const Criterion& criterion)
 
 void summarize(DetectionResult& result)
 {
+  const auto open = std::count_if(result.detections.begin(), result.detections.end(),
+                                  [](const Detection& detection) { return detection.undetermined_turn.has_value(); });
+  const std::string unknown = open > 0 ? "; the turn of " + std::to_string(open) + " of them is not known" : "";
   const std::string late = result.partial ? "; the deadline passed, so this is what was ready" : "";
   result.code = result.detections.empty() ? DetectionCode::NoMatch : DetectionCode::Ok;
   if (result.detections.empty())
@@ -24,7 +27,7 @@ void summarize(DetectionResult& result)
                      late;
   else
     result.message = std::to_string(result.detections.size()) + " part(s) found, the best with a score of " +
-                     roundedText(result.detections.front().score, 2) + late;
+                     roundedText(result.detections.front().score, 2) + unknown + late;
 }
 
 void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& parameters, DetectionResult& result)

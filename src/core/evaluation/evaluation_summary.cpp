@@ -63,13 +63,22 @@ private:
       ++figures_.instances;
       for (RecallAtLevel& recall : figures_.recall)
         if (instance.visible_fraction >= recall.level)
+        {
           recall.ratio.count(scene.found_by[i].has_value());
+          recall.turn_known.count(isFoundWithTurn(scene, i));
+        }
       if (instance.visible_fraction < levels_.front())
         continue;
       ++figures_.pickable;
       figures_.mean_distance_recall.count(scene.found_by_mean_distance[i]);
     }
     return figures_.pickable > pickable_before;
+  }
+
+  static bool isFoundWithTurn(const JudgedScene& scene, std::size_t instance)
+  {
+    const std::optional<std::size_t>& found_by = scene.found_by[instance];
+    return found_by && !scene.estimates[*found_by].estimate.undetermined_turn;
   }
 
   void countEstimates(const JudgedScene& scene)
@@ -79,6 +88,8 @@ private:
       if (!concerns(judged.estimate.part))
         continue;
       figures_.precision.count(judged.isHit());
+      if (judged.estimate.undetermined_turn)
+        figures_.undetermined.count(judged.isHit());
       figures_.right += judged.verdict == Verdict::Right;
       figures_.hidden += judged.verdict == Verdict::Hidden;
       figures_.duplicates += judged.verdict == Verdict::Duplicate;

@@ -93,6 +93,7 @@ private:
     for (const RecallAtLevel& recall : all_.recall)
       ratioTile("Found, of those " + levelText(recall.level) + " visible", recall.ratio);
     ratioTile("Right, of all poses returned", all_.precision);
+    writeTurnTiles();
     if (all_.average_precision)
       valueTile("Average precision", percent(*all_.average_precision),
                 report_.summary.parts.size() > 1 ? "mean over the parts" : "area under precision over recall");
@@ -102,6 +103,16 @@ private:
     spreadTile("Off in rotation", all_.rotation, 180 / M_PI, 2, "°");
     spreadTile("Time per scene", report_.summary.total, 1000, 0, "ms");
     out_ << "</div>\n";
+  }
+
+  /// What of the above holds for poses that leave a turn open, and what without them.
+  void writeTurnTiles()
+  {
+    if (all_.undetermined.total == 0)
+      return;
+    ratioTile("Right, of poses with an open turn", all_.undetermined);
+    for (const RecallAtLevel& recall : all_.recall)
+      ratioTile("Found with their turn, of those " + levelText(recall.level) + " visible", recall.turn_known);
   }
 
   void ratioCell(const Ratio& ratio)
@@ -122,6 +133,9 @@ private:
          << "</td><td>" << f.pickable << "<small>of " << f.instances << "</small></td>";
     for (const RecallAtLevel& recall : f.recall)
       ratioCell(recall.ratio);
+    if (all_.undetermined.total > 0)
+      for (const RecallAtLevel& recall : f.recall)
+        ratioCell(recall.turn_known);
     ratioCell(f.precision);
     for (const FirstPrecision& first : f.first)
       ratioCell(first.ratio);
@@ -140,6 +154,9 @@ private:
     out_ << "<h2>Parts</h2>\n<div class=\"panel\"><table>\n<tr><th>part</th><th>scenes</th><th>to be found</th>";
     for (const RecallAtLevel& recall : all_.recall)
       out_ << "<th>found, " << levelText(recall.level) << " visible</th>";
+    if (all_.undetermined.total > 0)
+      for (const RecallAtLevel& recall : all_.recall)
+        out_ << "<th>found with their turn, " << levelText(recall.level) << " visible</th>";
     out_ << "<th>right of all</th>";
     for (const FirstPrecision& first : all_.first)
       out_ << "<th>right of first " << first.first << "</th>";
@@ -220,6 +237,9 @@ private:
          << percent(report_.parameters.max_error_share)
          << " of its diameter or more (MSSD, symmetry considered). Best score first, each pose takes the nearest free "
             "part of its kind; a second one there is a duplicate, and wrong.</dd>\n"
+         << "<dt>open turn</dt><dd>A pose may say that its turn about an axis is not known. It is right if it is so "
+            "after the turn that fits best, and counts so in every figure but those of parts found with their "
+            "turn.</dd>\n"
          << "<dt>right, but hidden</dt><dd>The part is less than " << levelText(lowest_level_)
          << " visible: nobody asks for it. Counts as right among the poses returned, and not at all in the average "
             "precision.</dd>\n"

@@ -72,20 +72,43 @@ double averageNearestDistance(const std::vector<Eigen::Vector3f>& points, const 
   return sum / static_cast<double>(points.size());
 }
 
+namespace
+{
+/// \param nearest variant of the estimate that is nearest to the truth in rotation: it joins the samples of an axis, so
+/// that a perfect pose has no error at all
+double smallestDistance(const std::vector<Eigen::Vector3f>& points, const Pose& estimate, const Pose& truth,
+                        const Pose& nearest, const std::vector<Pose>& variants)
+{
+  const Pose T_truth_estimate = truth.inverse() * estimate;
+  double smallest = largestSquaredMotion(points, truth.inverse() * nearest);
+  for (const Pose& T_object_variant : variants)
+    smallest = std::min(smallest, largestSquaredMotion(points, T_truth_estimate * T_object_variant));
+  return std::sqrt(smallest);
+}
+
+void requireSteps(int steps)
+{
+  if (steps < 1)
+    throw ParameterError("A continuous symmetry was to be sampled at " + std::to_string(steps) +
+                         " angles; at least 1 is needed, 360 is usual.");
+}
+}  // namespace
+
 double maximumSymmetryAwareDistance(const std::vector<Eigen::Vector3f>& points, const Pose& estimate, const Pose& truth,
                                     const Symmetry& symmetry, int steps)
 {
   requirePoints(points);
-  if (steps < 1)
-    throw ParameterError("A continuous symmetry was to be sampled at " + std::to_string(steps) +
-                         " angles; at least 1 is needed, 360 is usual.");
-  const Pose T_truth_estimate = truth.inverse() * estimate;
-  // The equivalent that is nearest in rotation joins the samples of the axis, so that a perfect pose has no error at
-  // all.
-  const Pose nearest = truth.inverse() * nearestEquivalent(estimate, truth, symmetry);
-  double smallest = largestSquaredMotion(points, nearest);
-  for (const Pose& T_object_variant : symmetry.sampled(steps))
-    smallest = std::min(smallest, largestSquaredMotion(points, T_truth_estimate * T_object_variant));
-  return std::sqrt(smallest);
+  requireSteps(steps);
+  return smallestDistance(points, estimate, truth, nearestEquivalent(estimate, truth, symmetry),
+                          symmetry.sampled(steps));
+}
+
+double maximumSymmetryAwareDistance(const std::vector<Eigen::Vector3f>& points, const Pose& estimate, const Pose& truth,
+                                    const Symmetry& symmetry, const UndeterminedTurn& turn, int steps)
+{
+  requirePoints(points);
+  requireSteps(steps);
+  return smallestDistance(points, estimate, truth, nearestTurned(estimate, truth, turn, symmetry),
+                          sampledTurns(turn, symmetry, steps));
 }
 }  // namespace bin_picking

@@ -25,16 +25,29 @@ double middleDistance(const PartShape& shape, const Pose& a, const Pose& b)
   return (a * shape.center - b * shape.center).norm();
 }
 
-/// Mean distance from the true surface to the estimated one. Symmetry is undone first, so that the finite spacing of
-/// the points adds nothing for a pose that is right.
-double meanDistance(const PartShape& shape, const Pose& estimate, const Pose& truth)
+/// Of the poses that an estimate claims to be one of (symmetry, and a turn that it leaves open), the one nearest to the
+/// truth in rotation.
+Pose nearestClaimed(const PartShape& shape, const PoseEstimate& estimate, const Pose& truth)
 {
-  return averageNearestDistance(shape.surface_points, nearestEquivalent(estimate, truth, shape.symmetry), truth);
+  return estimate.undetermined_turn
+             ? nearestTurned(estimate.T_camera_object, truth, *estimate.undetermined_turn, shape.symmetry)
+             : nearestEquivalent(estimate.T_camera_object, truth, shape.symmetry);
 }
 
-double largestDistanceOf(const PartShape& shape, const Pose& estimate, const Pose& truth)
+/// Mean distance from the true surface to the estimated one. Symmetry is undone first, so that the finite spacing of
+/// the points adds nothing for a pose that is right.
+double meanDistance(const PartShape& shape, const PoseEstimate& estimate, const Pose& truth)
 {
-  return maximumSymmetryAwareDistance(shape.extreme_points, estimate, truth, shape.symmetry);
+  return averageNearestDistance(shape.surface_points, nearestClaimed(shape, estimate, truth), truth);
+}
+
+double largestDistanceOf(const PartShape& shape, const PoseEstimate& estimate, const Pose& truth)
+{
+  const auto& points = shape.extreme_points;
+  return estimate.undetermined_turn
+             ? maximumSymmetryAwareDistance(points, estimate.T_camera_object, truth, shape.symmetry,
+                                            *estimate.undetermined_turn)
+             : maximumSymmetryAwareDistance(points, estimate.T_camera_object, truth, shape.symmetry);
 }
 
 void requireEstimate(const EvaluationScene& scene, const PoseEstimate& estimate)
@@ -56,7 +69,7 @@ void requireInstance(const EvaluationScene& scene, const TrueInstance& instance)
                          " has no visible fraction; estimate it from the scan first.");
 }
 
-using PoseDistance = double (*)(const PartShape&, const Pose&, const Pose&);
+using PoseDistance = double (*)(const PartShape&, const PoseEstimate&, const Pose&);
 
 /// Row: estimate, column: instance; infinite for another part and for what is far apart.
 Eigen::MatrixXd errorTable(const JudgedScene& judged, const PartShapes& shapes, PoseDistance distance)
@@ -73,8 +86,7 @@ Eigen::MatrixXd errorTable(const JudgedScene& judged, const PartShapes& shapes, 
       const PartShape& shape = shapes.at(estimate.part);
       const Pose& truth = instances[i].T_camera_object;
       if (middleDistance(shape, estimate.T_camera_object, truth) < FAR_APART * shape.diameter)
-        errors(static_cast<Eigen::Index>(e), static_cast<Eigen::Index>(i)) =
-            distance(shape, estimate.T_camera_object, truth);
+        errors(static_cast<Eigen::Index>(e), static_cast<Eigen::Index>(i)) = distance(shape, estimate, truth);
     }
   return errors;
 }
@@ -114,9 +126,9 @@ void measureErrors(JudgedEstimate& judged, const std::vector<TrueInstance>& inst
 {
   if (!judged.instance)
     return;
-  const Pose& estimate = judged.estimate.T_camera_object;
+  const PoseEstimate& estimate = judged.estimate;
   const Pose& truth = instances[*judged.instance].T_camera_object;
-  judged.error = poseError(estimate, truth, shape.symmetry, shape.center);
+  judged.error = poseError(nearestClaimed(shape, estimate, truth), truth, Symmetry(), shape.center);
   judged.max_distance = largestDistanceOf(shape, estimate, truth);
   judged.mean_distance = meanDistance(shape, estimate, truth);
 }
@@ -253,7 +265,7 @@ std::string verdictText(const JudgedScene& scene, std::size_t estimate)
   switch (judged.verdict)
   {
     case Verdict::Right:
-      return "right: " + errorText(judged.error, 2);
+      return (judged.estimate.undetermined_turn ? "right up to its turn: " : "right: ") + errorText(judged.error, 2);
     case Verdict::Hidden:
       return "right, but hidden: " + errorText(judged.error, 2);
     case Verdict::Duplicate:

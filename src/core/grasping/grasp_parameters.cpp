@@ -40,6 +40,8 @@ const char* toString(GraspRejection rejection)
       return "none";
     case GraspRejection::MatchingRateTooLow:
       return "matching_rate_too_low";
+    case GraspRejection::UndeterminedTurn:
+      return "undetermined_turn";
     case GraspRejection::TiltTooLarge:
       return "tilt_too_large";
     case GraspRejection::OpeningTooSmall:

@@ -33,13 +33,15 @@ struct Surroundings
   const Gripper& gripper;
   const GraspParameters& parameters;
   const Bin* bin;
+  bool accept_undetermined_turn;
   std::optional<BinObstacles> obstacles;
   Eigen::Vector3d up_camera;  ///< out of the bin; without a bin towards the camera
 };
 
-Surroundings surroundings(const Gripper& gripper, const Bin* bin, const GraspParameters& parameters)
+Surroundings surroundings(const Gripper& gripper, const Bin* bin, const GraspParameters& parameters,
+                          bool accept_undetermined_turn)
 {
-  Surroundings s{gripper, parameters, bin, std::nullopt, -Eigen::Vector3d::UnitZ()};
+  Surroundings s{gripper, parameters, bin, accept_undetermined_turn, std::nullopt, -Eigen::Vector3d::UnitZ()};
   if (bin)
   {
     s.obstacles.emplace(*bin);
@@ -57,6 +59,7 @@ Grasp makeGrasp(const Detection& detection, const GraspDefinition& definition, c
   grasp.grasp_id = definition.id;
   grasp.T_camera_grasp = detection.T_camera_object * T_object_variant * T_variant_tip;
   grasp.T_tip_object = (T_object_variant * T_variant_tip).inverse();
+  grasp.undetermined_turn = detection.undetermined_turn.has_value();
   const Eigen::Vector3d approach = grasp.T_camera_grasp.linear().col(2);
   const Eigen::Vector3d away = s.bin ? s.up_camera : Eigen::Vector3d(-approach);
   grasp.T_camera_pre_grasp = Eigen::Translation3d(-definition.approach * approach) * grasp.T_camera_grasp;
@@ -83,6 +86,10 @@ void checkDetectionAndGripper(Grasp& grasp, const Detection& detection, const Su
     reject(grasp, GraspRejection::MatchingRateTooLow,
            "The matching rate of the part is " + text(100 * detection.matching_rate, 1) + " %, at least " +
                text(100 * required, 1) + " % is required (min_matching_rate).");
+  else if (detection.undetermined_turn && !s.accept_undetermined_turn)
+    reject(grasp, GraspRejection::UndeterminedTurn,
+           "Of the part, " + describe(*detection.undetermined_turn) +
+               "; the caller does not accept that (accept_undetermined_turn).");
   else if (!(grasp.opening <= s.gripper.max_opening))
     reject(grasp, GraspRejection::OpeningTooSmall,
            "The grasp asks for an opening of " + millimetres(grasp.opening) + ", the gripper \"" + s.gripper.name +
@@ -178,9 +185,10 @@ void expandGrasp(const Target& target, const GraspDefinition& definition, const 
 }  // namespace
 
 GraspSelection selectGrasps(const std::vector<Detection>& detections, const std::vector<PartDefinition>& parts,
-                            const Gripper& gripper, const Bin* bin, const GraspParameters& parameters)
+                            const Gripper& gripper, const Bin* bin, const GraspParameters& parameters,
+                            bool accept_undetermined_turn)
 {
-  const Surroundings s = surroundings(gripper, bin, parameters);
+  const Surroundings s = surroundings(gripper, bin, parameters, accept_undetermined_turn);
   Outcome outcome;
   for (std::size_t i = 0; i < detections.size(); ++i)
   {

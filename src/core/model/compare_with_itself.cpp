@@ -7,6 +7,7 @@
 
 #include "../common/parameter_text.hpp"
 #include "bin_picking_perception/common/kd_tree.hpp"
+#include "bin_picking_perception/model/slight_turn.hpp"
 #include "bin_picking_perception/model/symmetry_search.hpp"
 #include "bin_picking_perception/model/view_templates.hpp"
 
@@ -84,6 +85,10 @@ void compareWithItself(TrainedModel& model, const PartDefinition& definition, co
   for (std::string& sentence : describe(report))
     model.remarks.push_back(std::move(sentence));
   if (!report.round)
-    model.near_symmetries = findNearSymmetries(model.surface, model.field, model.symmetry, KEPT_BY_RIVALS * leaf);
+    model.near_symmetries =
+        findNearSymmetries(model.surface, model.field, surface, model.symmetry, KEPT_BY_RIVALS * leaf,
+                           model.parameters.slight_deviation * model.diameter);
+  for (std::string& sentence : describeSlightTurns(model))
+    model.remarks.push_back(std::move(sentence));
 }
 }  // namespace bin_picking

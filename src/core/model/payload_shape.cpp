@@ -85,6 +85,9 @@ void write(BinaryWriter& out, const std::vector<NearSymmetry>& turns)
     out.matrix(turn.axis.direction);
     out.matrix(turn.axis.origin);
     out.value(turn.broken);
+    out.value(turn.deviation);
+    out.value(static_cast<std::uint8_t>(turn.slight ? 1 : 0));
+    out.value(static_cast<std::uint8_t>(turn.slight_all_around ? 1 : 0));
   }
 }
 
@@ -97,6 +100,9 @@ std::vector<NearSymmetry> readNearSymmetries(BinaryReader& in)
     turn.axis.direction = in.matrix<Eigen::Vector3d>();
     turn.axis.origin = in.matrix<Eigen::Vector3d>();
     turn.broken = in.value<double>();
+    turn.deviation = in.value<double>();
+    turn.slight = in.value<std::uint8_t>() != 0;
+    turn.slight_all_around = in.value<std::uint8_t>() != 0;
   }
   return turns;
 }

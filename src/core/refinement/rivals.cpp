@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <vector>
+
+#include "bin_picking_perception/model/slight_turn.hpp"
 
 namespace bin_picking
 {
@@ -168,23 +171,91 @@ Pose betweenSteps(const Pose& step, const Symmetry::Axis& axis, const Contradict
   return best;
 }
 
-/// Farthest motion of the part's box corners, modulo its symmetry.
-double farthestMotion(const TrainedModel& model, const Pose& a, const Pose& b)
+/// Another pose than the chosen one.
+struct Rival
 {
-  const Pose nearest = nearestEquivalent(a, b, model.symmetry);
-  double farthest = 0;
-  for (int k = 0; k < 8; ++k)
+  Pose turn;                             ///< from the chosen pose to it, part frame
+  double margin = 0;                     ///< by which it is contradicted more
+  const NearSymmetry* slight = nullptr;  ///< what that turn is, if it is slight
+};
+
+/// Turns about one axis that lead from the chosen pose to others, modulo the part's symmetry.
+class TurnsAbout
+{
+public:
+  TurnsAbout(const TrainedModel& model, const NearSymmetry& one)
+      : model_(model), axis_(one.axis), any_(one.slight_all_around)
   {
-    const Eigen::Vector3d corner =
-        model.center + 0.5 * model.size.cwiseProduct(Eigen::Vector3d(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
-    farthest = std::max(farthest, (nearest * corner - b * corner).norm());
+    int largest = 0;
+    axis_.direction.cwiseAbs().maxCoeff(&largest);
+    if (axis_.direction[largest] < 0)
+      axis_.direction = -axis_.direction;  // as a person would write it
   }
-  return farthest;
+
+  bool leadTo(const Rival& rival) const
+  {
+    constexpr double SAME = 0.02;  // of the diameter
+    if (rival.slight == nullptr)
+      return false;
+    const Pose& turn = rival.slight->T_object_object;
+    return isSameLine(rival.slight->axis, axis_, SAME * model_.diameter) ||
+           farthestMotion(model_, turn, rotationAbout(axis_, angleAbout(axis_, turn))) < SAME * model_.diameter;
+  }
+
+  /// What those of the rivals leave open that cannot be told from the chosen pose.
+  UndeterminedTurn undetermined(const std::vector<Rival>& rivals, double min_margin) const
+  {
+    UndeterminedTurn open{axis_, {}, 0};
+    for (const Rival& rival : rivals)
+      if (rival.margin < min_margin && leadTo(rival))
+      {
+        open.deviation = std::max(open.deviation, rival.slight->deviation);
+        if (!any_)
+          open.angles.push_back(angleAbout(axis_, rival.slight->T_object_object));
+      }
+    std::sort(open.angles.begin(), open.angles.end());
+    open.angles.erase(std::unique(open.angles.begin(), open.angles.end(),
+                                  [](double a, double b) { return b - a < M_PI / NEAR_SYMMETRY_STEPS; }),
+                      open.angles.end());
+    return open;
+  }
+
+  /// Smallest margin of the rivals that the open turns do not lead to.
+  double marginBeyond(const std::vector<Rival>& rivals, double min_margin) const
+  {
+    double margin = std::numeric_limits<double>::infinity();
+    for (const Rival& rival : rivals)
+      if (!leadTo(rival) || (!any_ && rival.margin >= min_margin))
+        margin = std::min(margin, rival.margin);
+    return margin;
+  }
+
+private:
+  const TrainedModel& model_;
+  Symmetry::Axis axis_;
+  bool any_;
+};
+
+/// Where the slight rivals alone cannot be told apart, that is a turn left open.
+void leaveTurnOpen(const TrainedModel& model, std::vector<Rival>& rivals, double min_margin, RivalChoice& choice)
+{
+  const Rival* nearest = nullptr;
+  for (Rival& rival : rivals)
+  {
+    rival.slight = slightTurn(model, rival.turn);
+    if (rival.slight != nullptr && rival.margin < min_margin && (nearest == nullptr || rival.margin < nearest->margin))
+      nearest = &rival;
+  }
+  if (nearest == nullptr)
+    return;
+  const TurnsAbout turns(model, *nearest->slight);
+  choice.undetermined_turn = turns.undetermined(rivals, min_margin);
+  choice.margin_beyond_turn = turns.marginBeyond(rivals, min_margin);
 }
 }  // namespace
 
 RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
-                              const DepthGrid& surroundings, double tolerance)
+                              const DepthGrid& surroundings, double tolerance, double min_margin)
 {
   RivalChoice choice;
   choice.T_camera_object = T_camera_object;
@@ -211,10 +282,17 @@ RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_ob
         Eigen::Quaterniond(choice.T_camera_object.linear()).normalized().toRotationMatrix();
   }
   // Steps against steps: a turn between them would seem surer than it is, for the others were not turned further.
+  std::vector<Rival> rivals;
   for (std::size_t k = 0; k < turns.size(); ++k)
     if (k != best &&
         farthestMotion(model, T_camera_object * turns[k], choice.T_camera_object) > OTHER_POSE * model.diameter)
-      choice.margin = std::min(choice.margin, against[k] - against[best]);
+    {
+      rivals.push_back({turns[best].inverse() * turns[k], against[k] - against[best]});
+      choice.margin = std::min(choice.margin, rivals.back().margin);
+    }
+  choice.margin_beyond_turn = choice.margin;
+  if (choice.margin < min_margin)
+    leaveTurnOpen(model, rivals, min_margin, choice);
   return choice;
 }
 

@@ -49,6 +49,10 @@ void VerificationParameters::visit(ParameterVisitor& v)
            "contradicted by less than this more, in squares of a leaf's edge; 0 accepts guesses",
            0, 1000},
           min_turn_margin);
+  v.field({"accept_undetermined_turns", "",
+           "return a pose whose turn about an axis cannot be told, if all else is known and what tells the turn is "
+           "slight (training/slight_deviation), and say so; false: it is ambiguous, and rejected"},
+          accept_undetermined_turns);
   v.field({"min_surface_share", "",
            "smallest share of the points measured near the part's surface that lie on it; parts of "
            "another shape leave points beside it",
