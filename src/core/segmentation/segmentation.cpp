@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/model/view_templates.hpp"
@@ -14,7 +13,7 @@ namespace bin_picking
 {
 namespace
 {
-constexpr int MAX_SPECK_PIXELS = 9;
+constexpr std::size_t MAX_SPECK_PIXELS = 9;
 
 /// The picture that Algorithm 1 starts from has a white background (its step 2 turns it black). Data is never white
 /// then.
@@ -69,31 +68,59 @@ struct Box
   int v_max = -1;
 };
 
-/// Sets small groups of zeros. Missing pixels are not contours; the views, which are compared with, have none.
-void fillSpecks(cv::Mat mask)
+/// Sets small groups of zeros within a border of zeros. Missing pixels are not contours; the views, which are compared
+/// with, have none.
+void fillSpecks(std::vector<std::uint8_t>& mask, int width)
 {
-  cv::Mat groups;
-  cv::Mat stats;
-  cv::Mat centroids;
-  cv::connectedComponentsWithStats(mask == 0, groups, stats, centroids, 4);
-  for (int v = 0; v < mask.rows; ++v)
-    for (int u = 0; u < mask.cols; ++u)
-      if (stats.at<int>(groups.at<int>(v, u), cv::CC_STAT_AREA) <= MAX_SPECK_PIXELS)
-        mask.at<std::uint8_t>(v, u) = 1;
+  constexpr std::uint8_t SEEN = 2;
+  std::vector<std::size_t> group;
+  const auto take = [&](std::size_t i) {
+    if (mask[i] != 0)
+      return;
+    mask[i] = SEEN;
+    group.push_back(i);
+  };
+  const auto row = static_cast<std::size_t>(width);
+  for (std::size_t i = 0; i < mask.size(); ++i)
+  {
+    group.clear();
+    take(i);
+    for (std::size_t k = 0; k < group.size(); ++k)
+    {
+      const std::size_t j = group[k];
+      const std::size_t column = j % row;
+      if (column > 0)
+        take(j - 1);
+      if (column + 1 < row)
+        take(j + 1);
+      if (j >= row)
+        take(j - row);
+      if (j + row < mask.size())
+        take(j + row);
+    }
+    if (group.size() <= MAX_SPECK_PIXELS)
+      for (const std::size_t j : group)
+        mask[j] = 1;
+  }
+  std::replace(mask.begin(), mask.end(), SEEN, std::uint8_t{0});
 }
 
 /// Length of the contours of one label, pixels; measured as those of the model's views are.
 double contourPixels(const Segmentation& segmentation, int label, const Box& box)
 {
   // One pixel of margin closes contours at the frame.
-  cv::Mat mask = cv::Mat::zeros(box.v_max - box.v_min + 3, box.u_max - box.u_min + 3, CV_8U);
-  const std::int32_t* row =
-      &segmentation.labels[static_cast<std::size_t>(box.v_min) * static_cast<std::size_t>(segmentation.width)];
-  for (int v = box.v_min; v <= box.v_max; ++v, row += segmentation.width)
-    for (int u = box.u_min; u <= box.u_max; ++u)
-      mask.at<std::uint8_t>(v - box.v_min + 1, u - box.u_min + 1) = row[u] == label;
-  fillSpecks(mask);
-  return contourLength({mask.begin<std::uint8_t>(), mask.end<std::uint8_t>()}, mask.cols, mask.rows);
+  const int width = box.u_max - box.u_min + 3;
+  const int height = box.v_max - box.v_min + 3;
+  std::vector<std::uint8_t> mask(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
+  for (int v = box.v_min; v <= box.v_max; ++v)
+  {
+    const std::int32_t* from = &segmentation.labels[static_cast<std::size_t>(v * segmentation.width + box.u_min)];
+    std::uint8_t* to = &mask[static_cast<std::size_t>((v - box.v_min + 1) * width + 1)];
+    std::transform(from, from + (box.u_max - box.u_min + 1), to,
+                   [&](std::int32_t other) { return static_cast<std::uint8_t>(other == label ? 1 : 0); });
+  }
+  fillSpecks(mask, width);
+  return contourLength(mask, width, height);
 }
 
 std::vector<Segment> measureSegments(const Segmentation& segmentation, const DepthGrid& grid, const Executor& executor)
