@@ -88,8 +88,10 @@ struct DetectionResult
   bool partial = false;               ///< the deadline passed: what was ready is returned
   std::vector<Detection> detections;  ///< accepted, best first
   std::vector<Detection> rejected;    ///< with their reasons, best first, at most DetectorParameters::max_rejected
-  std::vector<StageTime> timing;      ///< in order of the pipeline
-  double total_seconds = 0;           ///< cloud in memory -> ranked detections
+  /// In order of the pipeline. Segmentation runs beside what describes the surface, if there are threads for both: its
+  /// time is what was left to wait for.
+  std::vector<StageTime> timing;
+  double total_seconds = 0;  ///< cloud in memory -> ranked detections
   std::vector<StageCount> counts;
   std::optional<SegmentationView> segmentation;
 };

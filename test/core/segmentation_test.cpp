@@ -57,11 +57,16 @@ Surface disc(const Eigen::Vector3d& centre, double radius)
                [=](const Eigen::Vector3d& p) { return (p - centre).head<2>().norm() <= radius; });
 }
 
-SegmentationParameters byDepthEdges() { return SegmentationParameters(); }
+SegmentationParameters byDepthEdges()
+{
+  SegmentationParameters parameters;
+  parameters.step = 1;
+  return parameters;
+}
 
 SegmentationParameters byWatershed()
 {
-  SegmentationParameters parameters;
+  SegmentationParameters parameters = byDepthEdges();
   parameters.method = SegmentationMethod::Watershed;
   return parameters;
 }
@@ -281,10 +286,38 @@ TEST(SegmentScene, NarrowPassagesAreCutAndWideOnesAreNot)
   EXPECT_EQ(segmentScene(grid, parameters, nullptr, Executor(1)).segments.size(), 1u);
 }
 
+TEST(SegmentScene, AThinnedGridHasTheSameSegments)
+{
+  const DepthGrid grid = render({rectangle({-0.08, 0, 0.8}, 0.06, 0.04), disc({0.06, 0.02, 0.78}, 0.03)});
+  const Segmentation whole = segmentScene(grid, byDepthEdges(), nullptr, Executor(1));
+  for (const int step : {2, 3})
+  {
+    SegmentationParameters parameters = byDepthEdges();
+    parameters.step = step;
+    const Segmentation s = segmentScene(grid, parameters, nullptr, Executor(1));
+    EXPECT_EQ(s.width, (grid.width + step - 1) / step);
+    EXPECT_EQ(s.labels.size(), static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height));
+    ASSERT_EQ(s.segments.size(), whole.segments.size());
+    for (std::size_t k = 0; k < s.segments.size(); ++k)
+    {
+      // Each side may lie anywhere between two pixels of the thinned grid.
+      const double border = whole.segments[k].contour * step * grid.pitch(whole.segments[k].mean_depth) / 2;
+      EXPECT_NEAR(s.segments[k].area, whole.segments[k].area, border);
+      EXPECT_NEAR(s.segments[k].contour, whole.segments[k].contour, 0.05 * whole.segments[k].contour);
+      EXPECT_NEAR(s.segments[k].mean_depth, whole.segments[k].mean_depth, 1e-4);
+    }
+    int differ = 0;
+    for (int v = 0; v < grid.height; ++v)
+      for (int u = 0; u < grid.width; ++u)
+        differ += s.labelAt(u, v) != whole.labelAt(u, v);
+    EXPECT_LT(differ, 0.1 * numValid(grid));  // at the borders
+  }
+}
+
 TEST(SegmentScene, WithoutAMethodAllIsOneSegment)
 {
   const DepthGrid grid = render({rectangle({-0.08, 0, 0.8}, 0.06, 0.04), disc({0.06, 0.02, 0.78}, 0.03)});
-  SegmentationParameters parameters;
+  SegmentationParameters parameters = byDepthEdges();
   parameters.method = SegmentationMethod::None;
   const Segmentation s = segmentScene(grid, parameters, nullptr, Executor(1));
   ASSERT_EQ(s.segments.size(), 1u);
@@ -332,13 +365,18 @@ TEST(SelectCandidates, WholeViewsAreAcceptedHalfOnesAndPairsAreNot)
 TEST(SelectCandidates, ViewsAreScaledToTheDepthAndHigherPartsComeFirst)
 {
   const DepthGrid grid = render({disc({-0.05, 0, 0.95}, 0.02), disc({0.05, 0, 0.6}, 0.02)});
-  const Segmentation s = segmentScene(grid, byDepthEdges(), nullptr, Executor(1));
-  const auto candidates = selectCandidates(s, grid, roundModel(), byDepthEdges());
-  ASSERT_EQ(candidates.size(), 2u);
-  for (const auto& candidate : candidates)
-    EXPECT_NEAR(candidate.pixel_ratio, 1, 0.04);
-  EXPECT_NEAR(s.segments[static_cast<std::size_t>(candidates[0].label - 1)].mean_depth, 0.6, 0.01);
-  EXPECT_GT(candidates[0].priority, candidates[1].priority);
+  for (const int step : {1, 2})
+  {
+    SegmentationParameters parameters = byDepthEdges();
+    parameters.step = step;
+    const Segmentation s = segmentScene(grid, parameters, nullptr, Executor(1));
+    const auto candidates = selectCandidates(s, grid, roundModel(), parameters);
+    ASSERT_EQ(candidates.size(), 2u);
+    for (const auto& candidate : candidates)
+      EXPECT_NEAR(candidate.pixel_ratio, 1, 0.04 * step);
+    EXPECT_NEAR(s.segments[static_cast<std::size_t>(candidates[0].label - 1)].mean_depth, 0.6, 0.01);
+    EXPECT_GT(candidates[0].priority, candidates[1].priority);
+  }
 }
 
 TEST(SelectCandidates, TheBestFittingViewDecides)

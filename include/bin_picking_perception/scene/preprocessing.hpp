@@ -40,9 +40,9 @@ int reductionFactor(const PointView& points, double leaf, const PreprocessingPar
 /// outlier_distance along the ray direction (slope-aware: the limit grows with the local pitch).
 void removeOutliers(DepthGrid& grid, const PreprocessingParameters& parameters, const Executor& executor);
 
-/// Unit normals towards the camera, one per pixel, by a plane fit over the neighbours within `radius` (metres) that are
-/// connected without a depth edge; NaN where there is no point or no plane.
-/// \param runs the grid's, by the default edge rule
+/// Unit normals towards the camera, one per pixel, by a plane fit over the neighbours that are connected without a
+/// depth edge, within a square of pixels as large as a disc of `radius` (metres) seen from the front; NaN where there
+/// is no point or no plane. \param runs the grid's, by the default edge rule
 std::vector<Eigen::Vector3f> estimateGridNormals(const DepthGrid& grid, const ConnectedRuns& runs, double radius,
                                                  const Executor& executor);
 std::vector<Eigen::Vector3f> estimateGridNormals(const DepthGrid& grid, double radius, const Executor& executor);

@@ -25,6 +25,7 @@ enum class SegmentationMethod
 struct SegmentationParameters
 {
   SegmentationMethod method = SegmentationMethod::DepthEdges;
+  int step = 2;          // of the pixels that are looked at, along rows and columns
   bool veto = false;     // true: only candidate targets are matched (paper); false: they only come first
   double gray_near = 0;  // depth that maps to the brightest gray; both 0: from the bin or the data
   double gray_far = 0;
@@ -44,8 +45,8 @@ struct SegmentationParameters
 
 struct Segment
 {
-  int label = 0;  ///< in Segmentation::labels
-  int pixels = 0;
+  int label = 0;          ///< in Segmentation::labels
+  int pixels = 0;         ///< of the thinned grid
   double area = 0;        ///< sum of pixel areas perpendicular to the rays, square metres
   double contour = 0;     ///< metres
   double mean_depth = 0;  ///< metres
@@ -53,11 +54,19 @@ struct Segment
 
 struct Segmentation
 {
-  int width = 0;
+  int width = 0;  ///< of the thinned grid
   int height = 0;
+  int step = 1;                      ///< pixels of the given grid from one of the thinned grid to the next
   std::vector<std::uint8_t> gray;    ///< 255 = near end, 1 = far end, 0 = no data
   std::vector<std::int32_t> labels;  ///< 0: none or border
   std::vector<Segment> segments;
+
+  /// Label at a pixel of the given grid.
+  std::int32_t labelAt(int u, int v) const
+  {
+    return labels[static_cast<std::size_t>(v / step) * static_cast<std::size_t>(width) +
+                  static_cast<std::size_t>(u / step)];
+  }
 };
 
 /// Depth mapped to gray over the effective range (Section 2.2.1): gray_near -> 255, gray_far -> 1, no data -> 0. Where
@@ -69,7 +78,7 @@ std::vector<std::uint8_t> depthToGray(const DepthGrid& grid, const SegmentationP
 std::vector<std::int32_t> watershedSegments(const std::vector<std::uint8_t>& gray, int width, int height,
                                             const SegmentationParameters& parameters);
 
-/// Segments of the grid by the chosen method. Deterministic.
+/// Segments of the grid, thinned by `step`, by the chosen method. Deterministic.
 Segmentation segmentScene(const DepthGrid& grid, const SegmentationParameters& parameters, const Bin* bin,
                           const Executor& executor);
 

@@ -101,8 +101,13 @@ DetectionResult Detector::detectIn(const PointView& points, const Request& reque
     if (measured < parameters_.input.empty_bin_points)
       continue;
     clock.count("points", measured);
-    describeScene(scene, model, parameters_, executor_, clock);
-    Segmentation segmentation = segmentScene(scene.grid, parameters_.segmentation, bin, executor_);
+    Segmentation segmentation;
+    executor_.forEach(2, [&](std::size_t side) {  // neither needs the other
+      if (side == 0)
+        describeScene(scene, model, parameters_, executor_, clock);
+      else
+        segmentation = segmentScene(scene.grid, parameters_.segmentation, bin, executor_);
+    });
     clock.count("segments", static_cast<double>(segmentation.segments.size()));
     const auto candidates = selectCandidates(segmentation, scene.grid, model, parameters_.segmentation);
     clock.count("candidates", static_cast<double>(candidates.size()));

@@ -25,7 +25,7 @@ constexpr double SAME_DISTANCE = 0.07;  // of the diameter
 Ranked lookAt(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
               const VerificationParameters& parameters, int comparison_cell)
 {
-  constexpr std::size_t COARSE_POINTS = 150;
+  constexpr std::size_t COARSE_POINTS = 64;
   const SurfaceIndices facing = facingPoints(model, pose.T_camera_object, COARSE_POINTS);
   const PoseEvidence evidence =
       gatherEvidence(model, facing, pose.T_camera_object, scene.grid, scene.surroundings, scene.normals,
@@ -45,16 +45,16 @@ bool isSmallTurn(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b)
 bool samePlace(const Pose& a, const Pose& b, const TrainedModel& model)
 {
   const double near_enough = SAME_DISTANCE * model.diameter;
-  const Eigen::Vector3d center = a * model.center;
+  const Eigen::Vector3d center = b.linear().transpose() * (a * model.center - b.translation());  // as b sees it
+  if ((center - model.center).squaredNorm() > model.diameter * model.diameter)
+    return false;
   const auto same = [&](const Pose& turn) {
-    if ((center - b * (turn * model.center)).squaredNorm() > near_enough * near_enough)
+    if ((center - turn * model.center).squaredNorm() > near_enough * near_enough)
       return false;
     const Pose other = b * turn;
     const Pose nearest = model.symmetry.trivial() ? other : nearestEquivalent(other, a, model.symmetry);
     return isSmallTurn(a.linear(), nearest.linear());
   };
-  if ((center - b * model.center).norm() > model.diameter)
-    return false;
   return same(Pose::Identity()) || std::any_of(model.near_symmetries.begin(), model.near_symmetries.end(),
                                                [&](const NearSymmetry& near) { return same(near.T_object_object); });
 }

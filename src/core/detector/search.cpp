@@ -71,7 +71,7 @@ SceneSamples selectSamples(const SceneSamples& samples, const std::vector<int>& 
 }
 
 /// Sample indices per segment label.
-std::vector<std::vector<int>> samplesByLabel(const SceneSamples& samples, const Segmentation& segmentation)
+std::vector<std::vector<int>> samplesByLabel(const SceneSamples& samples, int width, const Segmentation& segmentation)
 {
   int last = 0;
   for (const auto& segment : segmentation.segments)
@@ -79,7 +79,7 @@ std::vector<std::vector<int>> samplesByLabel(const SceneSamples& samples, const 
   std::vector<std::vector<int>> members(static_cast<std::size_t>(last) + 1);
   for (std::size_t i = 0; i < samples.size(); ++i)
   {
-    const std::int32_t label = segmentation.labels[static_cast<std::size_t>(samples.pixel[i])];
+    const std::int32_t label = segmentation.labelAt(samples.pixel[i] % width, samples.pixel[i] / width);
     if (label >= 0 && label <= last)
       members[static_cast<std::size_t>(label)].push_back(static_cast<int>(i));
   }
@@ -100,7 +100,7 @@ std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentat
                                      const DetectorParameters& parameters)
 {
   std::vector<SearchRegion> regions;
-  const auto members = samplesByLabel(scene.samples, segmentation);
+  const auto members = samplesByLabel(scene.samples, scene.grid.width, segmentation);
   if (parameters.segmentation.veto)
   {
     for (const auto& candidate : candidates)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "../common/simd.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
@@ -11,9 +12,9 @@
 
 // On the ray (s, t, 1) of a pixel, s = x / z and t = y / z, a plane A x + B y + C z = 1 has the inverse depth
 // q = A s + B t + C. The fit is linear and its errors are along the rays, as those of a depth sensor are. The
-// neighbourhood of a pixel is what can be reached by going up or down its column and then along a row, within a disc
-// and without crossing a depth edge. Each row of it is a run of pixels, so that running sums along the rows give its
-// moments.
+// neighbourhood of a pixel is what can be reached by going up or down its column and then along a row, within a square
+// and without crossing a depth edge: running sums along the rows give the moments of each pixel's piece of its row, and
+// running sums of these down the columns give those of the neighbourhood, whatever its size.
 
 namespace bin_picking
 {
@@ -22,32 +23,14 @@ namespace
 constexpr int TILE_WIDTH = 128;
 constexpr int TILE_HEIGHT = 32;
 constexpr int MAX_WINDOW = 64;  // pixels; a larger radius is cut
+/// Half the side of the square that has the area of a disc, per radius of the disc: sqrt(pi) / 2.
+constexpr float SQUARE_PER_RADIUS = 0.886227f;
 constexpr double MIN_PLANE_PIXELS = 5;
 /// Smallest ratio of the determinant to the squared trace of the window's spread; below, its pixels lie on a line.
 constexpr double MIN_SPREAD = 0.002;
 
 /// s, t, q, ss, st, tt, sq, tq, relative to a reference ray for accuracy.
 using Sums = std::array<double, 8>;
-
-/// Half the width of each row of a disc, for all disc sizes.
-class Discs
-{
-public:
-  explicit Discs(int max_window)
-  {
-    for (int w = 0; w <= max_window; ++w)
-    {
-      begin_.push_back(half_width_.size());
-      for (int k = 0; k <= w; ++k)
-        half_width_.push_back(static_cast<int>(std::sqrt((w + 0.5) * (w + 0.5) - k * k)));
-    }
-  }
-  const int* rows(int window) const { return &half_width_[begin_[static_cast<std::size_t>(window)]]; }
-
-private:
-  std::vector<std::size_t> begin_;
-  std::vector<int> half_width_;
-};
 
 struct Reference
 {
@@ -76,44 +59,77 @@ BIN_PICKING_SIMD void sumRow(const float* x, const float* y, const float* z, std
       sums[k + 1][m] += sums[k][m];
 }
 
-/// Pixels of one row of a neighbourhood: those after `before` up to `last`, as places in the running sums.
-struct Span
+/// Pieces of rows or columns: what comes after `before` up to `last`, as places in running sums.
+struct Spans
 {
-  std::size_t before;
-  std::size_t last;
+  std::array<int, TILE_WIDTH> before;
+  std::array<int, TILE_WIDTH> last;
 };
 
-BIN_PICKING_SIMD void sumSpans(const Sums* running, const Span* spans, std::size_t count, Sums& result)
+/// How the size of a neighbourhood follows from the depth.
+struct Window
 {
-  double sums[8] = {};
-  for (std::size_t k = 0; k < count; ++k)
+  float pixels_per_inverse_depth;
+
+  /// Half its side; 1 where there is no depth.
+  int at(float z) const
   {
-    const double* last = running[spans[k].last].data();
-    const double* before = running[spans[k].before].data();
-    for (std::size_t m = 0; m < 8; ++m)
-      sums[m] += last[m] - before[m];
+    const float half = pixels_per_inverse_depth / z + 0.5f;
+    return static_cast<int>(half > 1 ? (half < MAX_WINDOW ? half : static_cast<float>(MAX_WINDOW)) : 1.0f);
   }
-  std::copy(sums, sums + 8, result.begin());
+};
+
+/// The pieces around `count` neighbouring pixels, the first of which has a place in the running sums. \param before,
+/// after connected pixels on either side \param step from one place to the next of a piece
+BIN_PICKING_SIMD void findSpans(const float* z, const std::uint8_t* before, const std::uint8_t* after, int count,
+                                const Window& given, int place, int step, Spans& spans)
+{
+  const Window window = given;
+  for (int k = 0; k < count; ++k)
+  {
+    const int reach = window.at(z[k]);
+    const int back = before[k] < reach ? before[k] : reach;
+    const int on = after[k] < reach ? after[k] : reach;
+    spans.before[static_cast<std::size_t>(k)] = place + k - back * step;
+    spans.last[static_cast<std::size_t>(k)] = place + k + (on + 1) * step;
+  }
 }
 
-Eigen::Vector3f planeNormal(const Sums& sums, double n, const Reference& reference)
+/// sums[k] = start[k] + what lies in the k-th span
+BIN_PICKING_SIMD void addSpans(const Sums* running, const Spans& spans, std::size_t count, const Sums* start,
+                               Sums* sums)
 {
-  const double s = sums[0] / n;
-  const double t = sums[1] / n;
-  const double q = sums[2] / n;
-  const double ss = sums[3] - sums[0] * s;
-  const double st = sums[4] - sums[0] * t;
-  const double tt = sums[5] - sums[1] * t;
-  const double sq = sums[6] - sums[0] * q;
-  const double tq = sums[7] - sums[1] * q;
-  const double determinant = ss * tt - st * st;
-  if (n < MIN_PLANE_PIXELS || determinant < MIN_SPREAD * (ss + tt) * (ss + tt))
-    return Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
-  const double a = (tt * sq - st * tq) / determinant;
-  const double b = (ss * tq - st * sq) / determinant;
-  const double c = q + reference.q - a * (s + reference.s) - b * (t + reference.t);
-  // The origin lies on the side of the plane where A x + B y + C z < 1: minus the gradient points to the camera.
-  return (-Eigen::Vector3d(a, b, c).normalized()).cast<float>();
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t m = 0; m < 8; ++m)
+      sums[k][m] = start[k][m] + (running[spans.last[k]][m] - running[spans.before[k]][m]);
+}
+
+/// Normals of the planes that fit; NaN where no plane does.
+BIN_PICKING_SIMD void fitPlanes(const Sums* sums, const int* pixels, std::size_t count, const Reference& given,
+                                Eigen::Vector3f* normals)
+{
+  const Reference reference = given;
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const Sums& m = sums[k];
+    const auto n = static_cast<double>(pixels[k]);
+    const double s = m[0] / n;
+    const double t = m[1] / n;
+    const double q = m[2] / n;
+    const double ss = m[3] - m[0] * s;
+    const double st = m[4] - m[0] * t;
+    const double tt = m[5] - m[1] * t;
+    const double sq = m[6] - m[0] * q;
+    const double tq = m[7] - m[1] * q;
+    const double determinant = ss * tt - st * st;
+    const bool plane = n >= MIN_PLANE_PIXELS && determinant >= MIN_SPREAD * (ss + tt) * (ss + tt);
+    const double a = (tt * sq - st * tq) / determinant;
+    const double b = (ss * tq - st * sq) / determinant;
+    const double c = q + reference.q - a * (s + reference.s) - b * (t + reference.t);
+    // The origin lies on the side of the plane where A x + B y + C z < 1: minus the gradient points to the camera.
+    const double scale = plane ? -1 / std::sqrt(a * a + b * b + c * c) : std::numeric_limits<double>::quiet_NaN();
+    normals[k] = {static_cast<float>(scale * a), static_cast<float>(scale * b), static_cast<float>(scale * c)};
+  }
 }
 
 class NormalEstimator
@@ -122,24 +138,39 @@ public:
   NormalEstimator(const DepthGrid& grid, const ConnectedRuns& runs, double radius)
       : grid_(grid),
         runs_(runs),
-        pixels_per_inverse_depth_(radius / grid.pitch(1.0)),
-        max_window_(largestWindow()),
-        discs_(max_window_)
+        window_{SQUARE_PER_RADIUS * static_cast<float>(radius / grid.pitch(1.0))},
+        max_window_(largestWindow())
   {}
 
   /// Fills the normals of one tile.
   void estimate(int tile_u, int tile_v, std::vector<Eigen::Vector3f>& normals) const
   {
-    const Area tile{tile_u * TILE_WIDTH, std::min(grid_.width, (tile_u + 1) * TILE_WIDTH), tile_v * TILE_HEIGHT,
-                    std::min(grid_.height, (tile_v + 1) * TILE_HEIGHT)};
-    const int measured = firstMeasured(tile);
-    if (measured < 0)
+    const Area tile = measuredPart({tile_u * TILE_WIDTH, std::min(grid_.width, (tile_u + 1) * TILE_WIDTH),
+                                    tile_v * TILE_HEIGHT, std::min(grid_.height, (tile_v + 1) * TILE_HEIGHT)});
+    if (tile.u_begin >= tile.u_end)
       return;
-    const RunningSums sums(grid_, around(tile), referenceAt(measured));
+    const Reference reference = firstRay(tile);
+    const ColumnSums columns = sumColumns(tile, reference);
+    const int width = tile.u_end - tile.u_begin;
+    const auto count = static_cast<std::size_t>(width);
+    constexpr std::array<Sums, TILE_WIDTH> NONE{};
+    Spans spans;
+    std::array<int, TILE_WIDTH> pixels;
+    std::array<Sums, TILE_WIDTH> sums;
+    std::array<Eigen::Vector3f, TILE_WIDTH> fitted;
     for (int v = tile.v_begin; v < tile.v_end; ++v)
-      for (int u = tile.u_begin; u < tile.u_end; ++u)
-        if (const int i = grid_.index(u, v); grid_.valid(i))
-          normals[static_cast<std::size_t>(i)] = normalAt(u, v, sums);
+    {
+      const auto i = static_cast<std::size_t>(grid_.index(tile.u_begin, v));
+      findSpans(&grid_.z[i], &runs_.up[i], &runs_.down[i], width, window_, (v - columns.first) * width, width, spans);
+      addSpans(columns.sums.get(), spans, count, NONE.data(), sums.data());
+      for (std::size_t k = 0; k < count; ++k)
+        pixels[k] = columns.pixels[static_cast<std::size_t>(spans.last[k])] -
+                    columns.pixels[static_cast<std::size_t>(spans.before[k])];
+      fitPlanes(sums.data(), pixels.data(), count, reference, fitted.data());
+      for (std::size_t k = 0; k < count; ++k)
+        if (grid_.z[i + k] > 0)
+          normals[i + k] = fitted[k];
+    }
   }
 
 private:
@@ -148,44 +179,59 @@ private:
     int u_begin, u_end, v_begin, v_end;
   };
 
-  /// Sums over the pixels left of each pixel, per row of an area.
-  struct RunningSums
+  /// Per row of a tile and of what lies around it, sums over the rows above; row by row, a place per column.
+  struct ColumnSums
   {
-    RunningSums(const DepthGrid& grid, const Area& the_area, const Reference& the_reference)
-        : reference(the_reference), area(the_area), stride(area.u_end - area.u_begin + 1)
-    {
-      sums.resize(static_cast<std::size_t>(stride) * static_cast<std::size_t>(area.v_end - area.v_begin));
-      for (int v = area.v_begin; v < area.v_end; ++v)
-      {
-        const auto i = static_cast<std::size_t>(grid.index(area.u_begin, v));
-        sumRow(&grid.x[i], &grid.y[i], &grid.z[i], static_cast<std::size_t>(stride - 1), reference,
-               &sums[place(area.u_begin, v)]);
-      }
-    }
-    std::size_t place(int u, int v) const
-    {
-      return static_cast<std::size_t>((v - area.v_begin) * stride + u - area.u_begin);
-    }
-
-    Reference reference;
-    Area area;
-    int stride;
-    std::vector<Sums> sums;
+    int first = 0;  ///< row
+    std::unique_ptr<Sums[]> sums;
+    std::vector<int> pixels;
   };
 
-  /// Index of a measured pixel in the area; -1 if there is none.
-  int firstMeasured(const Area& area) const
+  ColumnSums sumColumns(const Area& tile, const Reference& reference) const
   {
+    const Area area = around(tile);
+    const int width = tile.u_end - tile.u_begin;
+    const auto count = static_cast<std::size_t>(width);
+    const auto places = count * static_cast<std::size_t>(area.v_end - area.v_begin + 1);
+    ColumnSums columns;
+    columns.first = area.v_begin;
+    columns.sums.reset(new Sums[places]);  // not set to 0, as a vector's would be: each is written below
+    columns.pixels.resize(places);
+    std::fill_n(columns.sums.get(), width, Sums{});
+    std::vector<Sums> row(static_cast<std::size_t>(area.u_end - area.u_begin) + 1);
+    Spans spans;
+    for (int v = area.v_begin; v < area.v_end; ++v)
+    {
+      const auto begin = static_cast<std::size_t>(grid_.index(area.u_begin, v));
+      sumRow(&grid_.x[begin], &grid_.y[begin], &grid_.z[begin], row.size() - 1, reference, row.data());
+      const auto i = static_cast<std::size_t>(grid_.index(tile.u_begin, v));
+      findSpans(&grid_.z[i], &runs_.left[i], &runs_.right[i], width, window_, tile.u_begin - area.u_begin, 1, spans);
+      const std::size_t above = static_cast<std::size_t>(v - area.v_begin) * count;
+      addSpans(row.data(), spans, count, &columns.sums[above], &columns.sums[above + count]);
+      for (std::size_t k = 0; k < count; ++k)
+        columns.pixels[above + count + k] = columns.pixels[above + k] + spans.last[k] - spans.before[k];
+    }
+    return columns;
+  }
+
+  /// The smallest area that holds all measured pixels of another one.
+  Area measuredPart(const Area& area) const
+  {
+    Area part{area.u_end, area.u_begin, area.v_end, area.v_begin};
     for (int v = area.v_begin; v < area.v_end; ++v)
       for (int u = area.u_begin; u < area.u_end; ++u)
         if (grid_.valid(grid_.index(u, v)))
-          return grid_.index(u, v);
-    return -1;
+          part = {std::min(part.u_begin, u), std::max(part.u_end, u + 1), std::min(part.v_begin, v), v + 1};
+    return part;
   }
 
-  Reference referenceAt(int pixel) const
+  /// Of a measured pixel in the first row of an area.
+  Reference firstRay(const Area& area) const
   {
-    const Eigen::Vector3d p = grid_.point(pixel).cast<double>();
+    int i = grid_.index(area.u_begin, area.v_begin);
+    while (!grid_.valid(i))
+      ++i;
+    const Eigen::Vector3d p = grid_.point(i).cast<double>();
     return {p.x() / p.z(), p.y() / p.z(), 1 / p.z()};
   }
 
@@ -195,48 +241,18 @@ private:
             std::max(0, tile.v_begin - max_window_), std::min(grid_.height, tile.v_end + max_window_)};
   }
 
-  int window(float z) const
-  {
-    return std::clamp(static_cast<int>(pixels_per_inverse_depth_ / static_cast<double>(z) + 0.5), 1, MAX_WINDOW);
-  }
-
   int largestWindow() const
   {
     float nearest = std::numeric_limits<float>::infinity();
     for (const float z : grid_.z)
       nearest = z < nearest ? z : nearest;
-    return window(nearest);
-  }
-
-  Eigen::Vector3f normalAt(int u, int v, const RunningSums& running) const
-  {
-    const auto i = static_cast<std::size_t>(grid_.index(u, v));
-    const int w = window(grid_.z[i]);
-    const int* half_width = discs_.rows(w);
-    const int up = std::min<int>(w, runs_.up[i]);
-    const int down = std::min<int>(w, runs_.down[i]);
-    std::array<Span, 2 * MAX_WINDOW + 1> spans;
-    std::size_t rows = 0;
-    int n = 0;
-    for (int k = -up; k <= down; ++k)
-    {
-      const auto row = static_cast<std::size_t>(grid_.index(u, v + k));
-      const int left = std::min<int>(half_width[std::abs(k)], runs_.left[row]);
-      const int right = std::min<int>(half_width[std::abs(k)], runs_.right[row]);
-      const std::size_t place = running.place(u, v + k);
-      spans[rows++] = {place - static_cast<std::size_t>(left), place + static_cast<std::size_t>(right) + 1};
-      n += left + right + 1;
-    }
-    Sums sums;
-    sumSpans(running.sums.data(), spans.data(), rows, sums);
-    return planeNormal(sums, n, running.reference);
+    return window_.at(nearest);
   }
 
   const DepthGrid& grid_;
   const ConnectedRuns& runs_;
-  double pixels_per_inverse_depth_;
+  Window window_;
   int max_window_;
-  Discs discs_;
 };
 }  // namespace
 

@@ -33,8 +33,9 @@ public:
         slope_per_depth_(static_cast<float>(EdgeRule().slope * grid.pitch(1.0)))
   {}
 
-  /// Per pixel of a row, share of the pixels around it, as far as they lie in the picture, whose depth is near.
-  void shares(int v, std::vector<float>& share) const
+  /// Share of the pixels around it, as far as they lie in the picture, whose depth is near; of each pixel of a row from
+  /// u0 up to u1.
+  void shares(int v, int u0, int u1, std::vector<float>& share) const
   {
     const int v0 = std::max(0, v - window_);
     const int v1 = std::min(grid_.height - 1, v + window_);
@@ -43,15 +44,15 @@ public:
     {
       for (int step = -window_; step <= window_; ++step)
       {
-        const int begin = std::max(0, -step);
-        const int size = grid_.width - std::abs(step);
+        const int begin = std::max(u0, -step);
+        const int size = std::min(u1, grid_.width - step) - begin;
         const auto steps = static_cast<float>(std::max(std::abs(row - v), std::abs(step)));
         if (size > 0)
           countNear(depths(begin, v), depths(begin + step, row), size, distance_, slope_per_depth_ * steps,
                     &share[static_cast<std::size_t>(begin)]);
       }
     }
-    for (int u = 0; u < grid_.width; ++u)
+    for (int u = u0; u < u1; ++u)
     {
       const int columns = std::min(grid_.width - 1, u + window_) - std::max(0, u - window_) + 1;
       const int neighbours = columns * (v1 - v0 + 1) - 1;
@@ -82,8 +83,14 @@ void removeOutliers(DepthGrid& grid, const PreprocessingParameters& parameters, 
     const int begin = static_cast<int>(band) * BAND;
     for (int v = begin; v < std::min(grid.height, begin + BAND); ++v)
     {
-      count.shares(v, share);
-      for (int u = 0; u < grid.width; ++u)
+      int u0 = 0;
+      int u1 = grid.width;
+      while (u0 < u1 && !grid.valid(grid.index(u0, v)))
+        ++u0;
+      while (u1 > u0 && !grid.valid(grid.index(u1 - 1, v)))
+        --u1;
+      count.shares(v, u0, u1, share);
+      for (int u = u0; u < u1; ++u)
         if (share[static_cast<std::size_t>(u)] < min_share && grid.valid(grid.index(u, v)))
           outliers[band].push_back(grid.index(u, v));
     }

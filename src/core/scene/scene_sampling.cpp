@@ -55,6 +55,13 @@ private:
   std::vector<Slot> slots_;
 };
 
+/// Without std::floor, which is a call where the processor's own instruction may not be taken for granted.
+int roundedDown(float value)
+{
+  const int towards_zero = static_cast<int>(value);
+  return towards_zero - (value < static_cast<float>(towards_zero) ? 1 : 0);
+}
+
 class Sampler
 {
 public:
@@ -66,8 +73,7 @@ public:
   int add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal)
   {
     const Eigen::Vector3f cell = point * scale_;
-    const Eigen::Vector3i voxel(static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y())),
-                                static_cast<int>(std::floor(cell.z())));
+    const Eigen::Vector3i voxel(roundedDown(cell.x()), roundedDown(cell.y()), roundedDown(cell.z()));
     if (!last_first_ || voxel != last_voxel_)  // neighbouring pixels mostly fall into one voxel
       last_first_ = &table_.firstSurface(voxel);
     last_voxel_ = voxel;

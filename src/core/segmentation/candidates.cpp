@@ -10,10 +10,9 @@ namespace bin_picking
 namespace
 {
 /// Ratios to the one-sided view that fits best: both as near to 1 as can be, too large and too small alike.
-void compareWithViews(const Segment& segment, const DepthGrid& grid, const std::vector<ViewTemplate>& views,
+void compareWithViews(const Segment& segment, double pitch, const std::vector<ViewTemplate>& views,
                       CandidateTarget& target)
 {
-  const double pitch = grid.pitch(segment.mean_depth);
   double best = std::numeric_limits<double>::infinity();
   for (const ViewTemplate& view : views)
   {
@@ -67,7 +66,7 @@ std::vector<CandidateTarget> selectCandidates(const Segmentation& segmentation, 
       continue;
     CandidateTarget target;
     target.label = segment.label;
-    compareWithViews(segment, grid, model.views, target);
+    compareWithViews(segment, segmentation.step * grid.pitch(segment.mean_depth), model.views, target);
     // A part that lies free on top is the easiest to take.
     target.priority = (std::min(1.0, target.pixel_ratio) + relativeHeight(segment, segmentation.segments)) / 2;
     // A point model without views gives nothing to compare with: every segment may be the part.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/model/view_templates.hpp"
@@ -14,7 +13,7 @@ namespace bin_picking
 {
 namespace
 {
-constexpr int MAX_SPECK_PIXELS = 9;
+constexpr std::size_t MAX_SPECK_PIXELS = 9;
 
 /// The picture that Algorithm 1 starts from has a white background (its step 2 turns it black). Data is never white
 /// then.
@@ -23,6 +22,25 @@ std::vector<std::uint8_t> onWhite(std::vector<std::uint8_t> gray)
   for (auto& level : gray)
     level = level == 0 ? 255 : std::min<std::uint8_t>(level, 254);
   return gray;
+}
+
+/// Every step-th pixel of every step-th row. Unlike means of blocks these keep the area of a part, whose border blocks
+/// are only partly measured.
+DepthGrid thinned(const DepthGrid& fine, int step)
+{
+  const PinholeCamera& c = fine.camera;
+  DepthGrid grid = makeGrid((fine.width + step - 1) / step, (fine.height + step - 1) / step,
+                            {c.fx / step, c.fy / step, c.cx / step, c.cy / step});
+  std::size_t to = 0;
+  for (int v = 0; v < fine.height; v += step)
+    for (int u = 0; u < fine.width; u += step, ++to)
+    {
+      const auto from = static_cast<std::size_t>(fine.index(u, v));
+      grid.x[to] = fine.x[from];
+      grid.y[to] = fine.y[from];
+      grid.z[to] = fine.z[from];
+    }
+  return grid;
 }
 
 std::vector<std::int32_t> labelScene(const DepthGrid& grid, const std::vector<std::uint8_t>& gray,
@@ -50,31 +68,59 @@ struct Box
   int v_max = -1;
 };
 
-/// Sets small groups of zeros. Missing pixels are not contours; the views, which are compared with, have none.
-void fillSpecks(cv::Mat mask)
+/// Sets small groups of zeros within a border of zeros. Missing pixels are not contours; the views, which are compared
+/// with, have none.
+void fillSpecks(std::vector<std::uint8_t>& mask, int width)
 {
-  cv::Mat groups;
-  cv::Mat stats;
-  cv::Mat centroids;
-  cv::connectedComponentsWithStats(mask == 0, groups, stats, centroids, 4);
-  for (int v = 0; v < mask.rows; ++v)
-    for (int u = 0; u < mask.cols; ++u)
-      if (stats.at<int>(groups.at<int>(v, u), cv::CC_STAT_AREA) <= MAX_SPECK_PIXELS)
-        mask.at<std::uint8_t>(v, u) = 1;
+  constexpr std::uint8_t SEEN = 2;
+  std::vector<std::size_t> group;
+  const auto take = [&](std::size_t i) {
+    if (mask[i] != 0)
+      return;
+    mask[i] = SEEN;
+    group.push_back(i);
+  };
+  const auto row = static_cast<std::size_t>(width);
+  for (std::size_t i = 0; i < mask.size(); ++i)
+  {
+    group.clear();
+    take(i);
+    for (std::size_t k = 0; k < group.size(); ++k)
+    {
+      const std::size_t j = group[k];
+      const std::size_t column = j % row;
+      if (column > 0)
+        take(j - 1);
+      if (column + 1 < row)
+        take(j + 1);
+      if (j >= row)
+        take(j - row);
+      if (j + row < mask.size())
+        take(j + row);
+    }
+    if (group.size() <= MAX_SPECK_PIXELS)
+      for (const std::size_t j : group)
+        mask[j] = 1;
+  }
+  std::replace(mask.begin(), mask.end(), SEEN, std::uint8_t{0});
 }
 
 /// Length of the contours of one label, pixels; measured as those of the model's views are.
 double contourPixels(const Segmentation& segmentation, int label, const Box& box)
 {
   // One pixel of margin closes contours at the frame.
-  cv::Mat mask = cv::Mat::zeros(box.v_max - box.v_min + 3, box.u_max - box.u_min + 3, CV_8U);
-  const std::int32_t* row =
-      &segmentation.labels[static_cast<std::size_t>(box.v_min) * static_cast<std::size_t>(segmentation.width)];
-  for (int v = box.v_min; v <= box.v_max; ++v, row += segmentation.width)
-    for (int u = box.u_min; u <= box.u_max; ++u)
-      mask.at<std::uint8_t>(v - box.v_min + 1, u - box.u_min + 1) = row[u] == label;
-  fillSpecks(mask);
-  return contourLength({mask.begin<std::uint8_t>(), mask.end<std::uint8_t>()}, mask.cols, mask.rows);
+  const int width = box.u_max - box.u_min + 3;
+  const int height = box.v_max - box.v_min + 3;
+  std::vector<std::uint8_t> mask(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
+  for (int v = box.v_min; v <= box.v_max; ++v)
+  {
+    const std::int32_t* from = &segmentation.labels[static_cast<std::size_t>(v * segmentation.width + box.u_min)];
+    std::uint8_t* to = &mask[static_cast<std::size_t>((v - box.v_min + 1) * width + 1)];
+    std::transform(from, from + (box.u_max - box.u_min + 1), to,
+                   [&](std::int32_t other) { return static_cast<std::uint8_t>(other == label ? 1 : 0); });
+  }
+  fillSpecks(mask, width);
+  return contourLength(mask, width, height);
 }
 
 std::vector<Segment> measureSegments(const Segmentation& segmentation, const DepthGrid& grid, const Executor& executor)
@@ -121,6 +167,10 @@ void SegmentationParameters::visit(ParameterVisitor& v)
           {{"none", SegmentationMethod::None},
            {"watershed", SegmentationMethod::Watershed},
            {"depth_edges", SegmentationMethod::DepthEdges}});
+  v.field({"step", "px",
+           "only every so many-th pixel of a row or column is looked at; larger is faster and sees less of narrow gaps",
+           1, 8},
+          step);
   v.field({"veto", "", "only candidate targets are matched; otherwise they come first and the rest follows"}, veto);
   v.field({"gray_near", "m", "depth shown as the brightest gray; 0 with gray_far 0: from the bin or the data", 0, 100},
           gray_near);
@@ -156,10 +206,12 @@ void SegmentationParameters::visit(ParameterVisitor& v)
           min_segment_area);
 }
 
-Segmentation segmentScene(const DepthGrid& grid, const SegmentationParameters& parameters, const Bin* bin,
+Segmentation segmentScene(const DepthGrid& fine, const SegmentationParameters& parameters, const Bin* bin,
                           const Executor& executor)
 {
+  const DepthGrid grid = thinned(fine, parameters.step);
   Segmentation segmentation;
+  segmentation.step = parameters.step;
   segmentation.width = grid.width;
   segmentation.height = grid.height;
   segmentation.gray = depthToGray(grid, parameters, bin);
