@@ -11,6 +11,7 @@
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/detector_parameters.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
+#include "bin_picking_perception/refinement/confidence.hpp"
 #include "bin_picking_perception/scene/bin.hpp"
 #include "bin_picking_perception/scene/depth_grid.hpp"
 
@@ -47,6 +48,9 @@ struct Detection
   double votes = 0;                 ///< of its cluster
   std::vector<Criterion> criteria;  ///< every test with its threshold
   std::string rejection;            ///< empty: accepted; else one sentence
+  /// What the score was computed from; none without verification, and none for a pose that was given up early, whose
+  /// score is 0.
+  std::optional<PoseQuality> quality;
 };
 
 enum class DetectionCode

@@ -79,6 +79,16 @@ Eigen::MatrixXd errorTable(const JudgedScene& judged, const PartShapes& shapes, 
   return errors;
 }
 
+bool hitsAny(const Detection& detection, const std::vector<TrueInstance>& instances, const PartShape& shape,
+             double limit)
+{
+  return std::any_of(instances.begin(), instances.end(), [&](const TrueInstance& instance) {
+    return instance.part == detection.part &&
+           middleDistance(shape, detection.T_camera_object, instance.T_camera_object) < FAR_APART * shape.diameter &&
+           largestDistanceOf(shape, detection.T_camera_object, instance.T_camera_object) < limit;
+  });
+}
+
 /// The column of the smallest entry of a row that is below the limit.
 std::optional<std::size_t> nearestBelow(const Eigen::MatrixXd& errors, std::size_t row, double limit)
 {
@@ -230,6 +240,22 @@ JudgedScene judgeScene(const EvaluationScene& scene, const std::vector<PoseEstim
     measureErrors(e, scene.instances, shape);
   }
   return judged;
+}
+
+std::vector<TestedPose> judgeTested(const EvaluationScene& scene, const DetectionResult& result,
+                                    const PartShapes& shapes, const EvaluationParameters& parameters)
+{
+  std::vector<TestedPose> tested;
+  for (const auto* poses : {&result.detections, &result.rejected})
+    for (const Detection& detection : *poses)
+    {
+      if (!detection.quality)
+        continue;
+      const PartShape& shape = shapes.at(detection.part);
+      tested.push_back({detection.part, detection.score, *detection.quality, detection.rejection.empty(),
+                        hitsAny(detection, scene.instances, shape, parameters.max_error_share * shape.diameter)});
+    }
+  return tested;
 }
 
 const char* toString(Verdict verdict)
