@@ -95,7 +95,7 @@ void expectCalibrationOfTheTested(const Json& json)
       square += std::pow(pose.at("score").get<double>() - (pose.at("right").get<bool>() ? 1 : 0), 2);
       ++count;
       EXPECT_EQ(pose.at("part"), "three_way_tube");
-      EXPECT_EQ(pose.at("terms").at("inlier_share"), pose.at("quality").at("inlier_share"));
+      EXPECT_EQ(pose.at("terms").at("surface_share"), pose.at("quality").at("surface_share"));
     }
   EXPECT_EQ(accepted, 2);
   EXPECT_GE(right, 2);

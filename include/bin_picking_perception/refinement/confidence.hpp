@@ -17,8 +17,8 @@ struct PoseQuality
   double bin_penetration = 0;  ///< metres; 0 without a bin
 };
 
-/// What the score is computed from, as it enters: clamped, logarithms taken, and turned so that more never speaks
-/// against the pose.
+/// What the score is computed from, as it enters: clamped, logarithms and roots taken, and turned so that more never
+/// speaks against the pose.
 struct ConfidenceTerm
 {
   const char* name = "";

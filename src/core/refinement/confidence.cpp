@@ -15,10 +15,11 @@ namespace weights = confidence_weights;
 
 // Beyond these limits more is not better, or worse.
 constexpr double MOST_VIOLATION = 0.3;
-constexpr double LEAST_MARGIN = 0.03;
+constexpr double LEAST_MARGIN = 1;
 constexpr double MOST_MARGIN = 300;
 constexpr double MOST_PENETRATION = 0.02;
 
+/// The inlier share is not among them: beside violation and surface share it says nothing more.
 struct Term
 {
   const char* name;
@@ -27,9 +28,8 @@ struct Term
 };
 
 const Term TERMS[] = {
-    {"inlier_share", weights::INLIER_SHARE, [](const PoseQuality& q) { return q.inlier_share; }},
     {"violation_share", weights::VIOLATION_SHARE,
-     [](const PoseQuality& q) { return -std::min(q.violation_share, MOST_VIOLATION); }},
+     [](const PoseQuality& q) { return -std::sqrt(std::min(q.violation_share, MOST_VIOLATION)); }},
     {"surface_share", weights::SURFACE_SHARE, [](const PoseQuality& q) { return q.surface_share; }},
     {"outline_share", weights::OUTLINE_SHARE, [](const PoseQuality& q) { return q.outline_share; }},
     {"turn_margin", weights::TURN_MARGIN,
