@@ -12,6 +12,7 @@
 #include "bin_picking_perception/detector_parameters.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
 #include "bin_picking_perception/model/undetermined_turn.hpp"
+#include "bin_picking_perception/refinement/confidence.hpp"
 #include "bin_picking_perception/scene/bin.hpp"
 #include "bin_picking_perception/scene/depth_grid.hpp"
 
@@ -50,6 +51,9 @@ struct Detection
   std::string rejection;            ///< empty: accepted; else one sentence
   /// What the view leaves open of the pose, and its score does not count; nothing: the pose is known in full.
   std::optional<UndeterminedTurn> undetermined_turn;
+  /// What the score was computed from; none without verification, and none for a pose that was given up early, whose
+  /// score is 0.
+  std::optional<PoseQuality> quality;
 };
 
 enum class DetectionCode

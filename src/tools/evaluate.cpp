@@ -126,6 +126,7 @@ JudgedScene runDetector(const Detector& detector, const EvaluationScene& scene, 
   request.parts = scene.parts;
   std::vector<RunTime> runs;
   std::vector<PoseEstimate> estimates;
+  std::vector<TestedPose> tested;
   for (int k = 0; k < repetitions; ++k)
   {
     // The conversion of the cloud is part of the time.
@@ -135,8 +136,11 @@ JudgedScene runDetector(const Detector& detector, const EvaluationScene& scene, 
     estimates.clear();  // every run finds the same
     for (const Detection& detection : result.detections)
       estimates.push_back({detection.part, detection.T_camera_object, detection.score, detection.undetermined_turn});
+    if (k == 0)
+      tested = judgeTested(scene, result, shapes, parameters);
   }
   JudgedScene judged = judgeScene(scene, estimates, shapes, parameters);
+  judged.tested = std::move(tested);
   judged.runs = runs;
   return judged;
 }

@@ -28,6 +28,17 @@ Json spreadJson(const Spread& spread, double scale)
   return {{"median", spread.median * scale}, {"p95", spread.p95 * scale}, {"count", spread.count}};
 }
 
+Json calibrationJson(const Calibration& calibration)
+{
+  Json json = {{"count", calibration.count},
+               {"brier_score", calibration.brier_score},
+               {"expected_error", calibration.expected_error},
+               {"tenths", Json::array()}};
+  for (const CalibrationBin& tenth : calibration.tenths)
+    json["tenths"].push_back({{"mean_score", tenth.mean_score}, {"right", ratioJson(tenth.right)}});
+  return json;
+}
+
 Json figuresJson(const EvaluationFigures& f)
 {
   Json json = {{"scenes", f.scenes},
@@ -61,6 +72,8 @@ Json figuresJson(const EvaluationFigures& f)
   json["rotation_deg"] = spreadJson(f.rotation, DEGREES);
   json["add_s_mm"] = spreadJson(f.mean_distance, 1000);
   json["add_s_recall"] = ratioJson(f.mean_distance_recall);
+  if (f.tested.count > 0)
+    json["calibration"] = {{"tested", calibrationJson(f.tested)}, {"returned", calibrationJson(f.returned)}};
   return json;
 }
 
@@ -82,6 +95,19 @@ Json estimateJson(const JudgedScene& scene, std::size_t index)
   json["rotation_deg"] = judged.error.rotation * DEGREES;
   json["mssd_mm"] = judged.max_distance * 1000;
   json["add_s_mm"] = judged.mean_distance * 1000;
+  return json;
+}
+
+Json testedJson(const TestedPose& pose)
+{
+  const PoseQuality& q = pose.quality;
+  Json json = {{"part", pose.part}, {"score", pose.score}, {"accepted", pose.accepted}, {"right", pose.right}};
+  json["quality"] = {{"inlier_share", q.inlier_share},      {"violation_share", q.violation_share},
+                     {"surface_share", q.surface_share},    {"outline_share", q.outline_share},
+                     {"turn_margin", q.turn_margin},  // infinity is null
+                     {"bin_penetration", q.bin_penetration}};
+  for (const ConfidenceTerm& term : confidenceTerms(q))
+    json["terms"][term.name] = term.value;
   return json;
 }
 
@@ -137,6 +163,9 @@ nlohmann::json toJson(const JudgedScene& scene)
     json["instances"].push_back(instanceJson(scene, i));
   for (std::size_t e = 0; e < scene.estimates.size(); ++e)
     json["estimates"].push_back(estimateJson(scene, e));
+  json["tested"] = Json::array();
+  for (const TestedPose& pose : scene.tested)
+    json["tested"].push_back(testedJson(pose));
   for (const RunTime& run : scene.runs)
     json["total_ms"].push_back(run.total * 1000);
   json["stages"] = stagesJson(scene.runs);

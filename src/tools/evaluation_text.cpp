@@ -84,6 +84,27 @@ void printOpenTurns(std::ostream& out, const EvaluationFigures& f)
     printRatio(out, "  found with their turn, " + levelName(recall.level), recall.turn_known);
 }
 
+/// Only the tenths that have poses.
+void printCalibration(std::ostream& out, const Calibration& tested, const Calibration& returned)
+{
+  out << "\nscore against truth of " << tested.count << " poses that were tested in full: Brier score "
+      << fixed(tested.brier_score, 3) << ", expected calibration error " << percent(tested.expected_error)
+      << "\n  score          tested   mean   right  95 % interval   returned   right\n";
+  for (std::size_t k = 0; k < tested.tenths.size(); ++k)
+  {
+    const CalibrationBin& tenth = tested.tenths[k];
+    if (tenth.right.total == 0)
+      continue;
+    const double low = static_cast<double>(k) / 10;
+    const Interval interval = tenth.right.interval();
+    out << "  " << fixed(low, 1) << " to " << fixed(low + 0.1, 1) << std::setw(11) << tenth.right.total << std::setw(7)
+        << fixed(tenth.mean_score, 2) << std::setw(8) << percent(tenth.right.value()) << std::setw(6)
+        << fixed(100 * interval.low, 0) << " to " << std::setw(3) << fixed(100 * interval.high, 0) << " %"
+        << std::setw(11) << returned.tenths[k].right.total << std::setw(8) << percent(returned.tenths[k].right.value())
+        << "\n";
+  }
+}
+
 void printSpread(std::ostream& out, const std::string& name, const Spread& spread, double scale,
                  const std::string& unit)
 {
@@ -117,5 +138,7 @@ void print(std::ostream& out, const EvaluationSummary& summary)
   printSpread(out, "time per scene, median", summary.total, 1000, "ms");
   for (const StageSpread& stage : summary.stages)
     printSpread(out, "  " + stage.stage, stage.seconds, 1000, "ms");
+  if (all.tested.count > 0)
+    printCalibration(out, all.tested, all.returned);
 }
 }  // namespace bin_picking::tools

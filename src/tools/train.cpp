@@ -101,7 +101,7 @@ void printSummary(TrainedModel model, double seconds, const std::string& path)
   printMesh(model);
   printLine("symmetry", symmetryText(model.symmetry));
   for (const std::string& remark : model.remarks)
-    printLine("", remark);
+    printLine("found", remark);
   printLine("points", std::to_string(model.points.size()) + " at the leaf, " + std::to_string(model.surface.size()) +
                           " on the surface, " + std::to_string(model.views.size()) + " views");
   printLine("pairs", std::to_string(model.table.numEntries()) + " under " + std::to_string(model.table.numKeys()) +

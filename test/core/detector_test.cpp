@@ -105,8 +105,13 @@ TEST(Detector, paperPresetFindsItsCandidateTargets)
   Detector::Request request;
   request.bin = test::wideBin();
   request.keep_segmentation = true;
+  // The preset looks up cut-off neighbourhoods as any other, so the model has its curvature all around, as in the text.
+  TrainingParameters training;
+  training.feature = FeatureKind::CurPpf;
+  training.curvature_in_views = false;
+  const auto model = trainPart(test::teeDefinition(), training, Executor(2));
   const DetectionResult result =
-      detector(DetectorParameters::preset("paper")).detect(test::renderTees(truth, SIGMA), request);
+      Detector({model}, DetectorParameters::preset("paper")).detect(test::renderTees(truth, SIGMA), request);
   ASSERT_GE(result.detections.size(), 2u) << result.message;
   const auto right =
       std::count_if(truth.begin(), truth.end(), [&](const Pose& T) { return indexOf(result.detections, T) >= 0; });

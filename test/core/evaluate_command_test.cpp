@@ -4,6 +4,8 @@
 // Runs `bin_picking evaluate` as a user does, on a small data set that is rendered here.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/command_runner.hpp"
 #include "core/dataset_folders.hpp"
 #include "core/tee_scene.hpp"
@@ -78,12 +80,38 @@ void expectTimesAddUp(const Json& scene, std::size_t runs)
   }
 }
 
+/// Both tubes are among the poses that were tested, and the figures count those that are listed.
+void expectCalibrationOfTheTested(const Json& json)
+{
+  int accepted = 0;
+  int right = 0;
+  double square = 0;
+  double count = 0;
+  for (const Json& scene : json.at("scenes"))
+    for (const Json& pose : scene.at("tested"))
+    {
+      accepted += pose.at("accepted").get<bool>() ? 1 : 0;
+      right += pose.at("right").get<bool>() ? 1 : 0;
+      square += std::pow(pose.at("score").get<double>() - (pose.at("right").get<bool>() ? 1 : 0), 2);
+      ++count;
+      EXPECT_EQ(pose.at("part"), "three_way_tube");
+      EXPECT_EQ(pose.at("terms").at("surface_share"), pose.at("quality").at("surface_share"));
+    }
+  EXPECT_EQ(accepted, 2);
+  EXPECT_GE(right, 2);
+  const Json& calibration = json.at("all").at("calibration");
+  EXPECT_EQ(calibration.at("tested").at("count"), count);
+  EXPECT_NEAR(calibration.at("tested").at("brier_score").get<double>(), square / count, 1e-9);
+  EXPECT_EQ(calibration.at("returned").at("count"), 2);
+  EXPECT_EQ(calibration.at("tested").at("tenths").size(), 10u);
+}
+
 TEST_F(EvaluateCommand, FindsTheTubesAndReportsInEveryForm)
 {
   const Outcome outcome = run(onBins("--repeat 2 --json " + file("report.json") + " --csv " + file("found.csv") +
                                      " --html " + file("report.html")));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.text;
-  expectWords(outcome.text, {"2 scenes, 2 parts in them", "three_way_tube", "95 % interval", "voting"});
+  expectWords(outcome.text, {"2 scenes, 2 parts in them", "three_way_tube", "95 % interval", "voting", "Brier score"});
 
   const Json json = readJson("report.json");
   EXPECT_EQ(json.at("format"), 1);
@@ -99,10 +127,11 @@ TEST_F(EvaluateCommand, FindsTheTubesAndReportsInEveryForm)
   EXPECT_EQ(json.at("scenes").at(1).at("name"), "tubes");
   EXPECT_EQ(json.at("scenes").at(1).at("estimates").at(0).at("verdict"), "right");
   expectTimesAddUp(json.at("scenes").at(1), 2);
+  expectCalibrationOfTheTested(json);
   EXPECT_GT(json.at("scenes").at(1).at("counts").at("votes"), 0);
 
   const std::string page = readFile(file("report.html"));
-  expectWords(page, {"data:image/jpeg;base64,/9j/", "mark-right", "<b>tubes"});
+  expectWords(page, {"data:image/jpeg;base64,/9j/", "mark-right", "<b>tubes", "Score against truth"});
   EXPECT_EQ(page.find("http"), std::string::npos);
 }
 
@@ -112,6 +141,8 @@ TEST_F(EvaluateCommand, WrittenResultsAreJudgedTheSame)
   const Outcome again =
       run("--dataset " + file("bins") + " --results " + file("ours.csv") + " --json " + file("read.json"));
   ASSERT_EQ(again.exit_code, 0) << again.text;
+  EXPECT_EQ(again.text.find("Brier"), std::string::npos) << "scores of others need not be probabilities";
+  EXPECT_FALSE(readJson("read.json").at("all").contains("calibration"));
   const Json ours = readJson("ours.json").at("all");
   const Json read = readJson("read.json").at("all");
   for (const char* figure : {"right", "wrong", "duplicates", "pickable", "recall", "precision", "average_precision"})

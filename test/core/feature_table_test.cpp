@@ -256,6 +256,15 @@ TEST(CurvatureClasses, uniformCurvatureWeighsNothing)
   EXPECT_EQ(classes.classOf(0.f), 0);
 }
 
+TEST(CurvatureBins, asManyAsMeasurementsTellApart)
+{
+  EXPECT_EQ(distinguishableBins(100, 8), 3);  // 100 / (4 * 8) = 3.1
+  EXPECT_EQ(distinguishableBins(100, 9), 2);
+  EXPECT_EQ(distinguishableBins(100, 1), MAX_AUTOMATIC_CURVATURE_BINS);
+  EXPECT_EQ(distinguishableBins(1, 8), 1);
+  EXPECT_EQ(distinguishableBins(100, 0), MAX_AUTOMATIC_CURVATURE_BINS) << "not known";
+}
+
 TEST(CurvatureBins, oneBinWhereCurvatureDoesNotVary)
 {
   FeatureQuantizer q;
@@ -265,7 +274,7 @@ TEST(CurvatureBins, oneBinWhereCurvatureDoesNotVary)
   for (int i = 0; i <= 1000; ++i)
     spread.push_back(static_cast<float>(i - 500) / 10);
   chooseCurvatureBins(q, spread, 0, 100);
-  EXPECT_EQ(q.curvature_bins, AUTOMATIC_CURVATURE_BINS);
+  EXPECT_EQ(q.curvature_bins, MAX_AUTOMATIC_CURVATURE_BINS);
   chooseCurvatureBins(q, spread, 25, 100);
   EXPECT_EQ(q.curvature_bins, 4);
   EXPECT_EQ(q.curvature_min, -50);

@@ -149,6 +149,17 @@ TEST(HtmlReport, ShowsOpenTurnsOnlyWhereThereAreSome)
                      "#1 right up to its turn: 0.00 mm", "1 of 2 ("});
 }
 
+TEST(HtmlReport, HoldsScoresAgainstTruthWherePosesWereTested)
+{
+  JudgedScene scene = judged("one", {shifted(0, 0.95)});
+  EXPECT_EQ(count(htmlReport(report({scene})), "Brier score "), 0u);
+  scene.tested = {{"bar", 0.95, {}, true, true}, {"bar", 0.25, {}, false, true}, {"bar", 0.15, {}, false, false}};
+  const std::string page = htmlReport(report({scene}));
+  expectWords(page, {"3 poses tested in full", "Brier score 0.196, expected calibration error 31.7 %",
+                     "<td>0.9–1.0</td><td>1</td><td>95.0 %</td><td>100.0 %"});
+  EXPECT_EQ(count(page, "<td class=\"reliability\">"), 3u) << "a line for every tenth that has poses";
+}
+
 TEST(HtmlReport, EverySceneHasItsPicture)
 {
   EvaluationReport incomplete = report({judged("one", {})});

@@ -86,6 +86,7 @@ TEST_P(PaperConfig, HoldsThePublishedConstants)
   EXPECT_EQ(training.curvature_measure, paper.measure);
   EXPECT_FALSE(training.covisible_pairs);
   EXPECT_FALSE(training.fold_symmetry);
+  EXPECT_FALSE(training.curvature_in_views);
   EXPECT_LT(training.min_pair_distance, 0.01 * paper.leaf * MM);
   EXPECT_GT(training.min_pair_distance, 0) << "0 would mean a distance derived from the leaf";
 

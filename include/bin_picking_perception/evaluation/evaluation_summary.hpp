@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bin_picking_perception/evaluation/calibration.hpp"
 #include "bin_picking_perception/evaluation/scene_judgement.hpp"
 #include "bin_picking_perception/evaluation/statistics.hpp"
 
@@ -47,6 +48,8 @@ struct EvaluationFigures
   Spread translation;          ///< of the hits, metres
   Spread rotation;             ///< of the hits, rad
   Spread mean_distance;        ///< ADD-S of the hits, metres
+  Calibration tested;          ///< scores of all poses that were tested in full against their truth
+  Calibration returned;        ///< of those of them that were accepted
   Ratio mean_distance_recall;  ///< pickable instances found with ADD-S below the same share of the diameter
 };
 

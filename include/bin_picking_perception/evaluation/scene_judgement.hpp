@@ -60,6 +60,18 @@ struct JudgedEstimate
   bool isHit() const { return verdict == Verdict::Right || verdict == Verdict::Hidden; }
 };
 
+/// A pose that our detector tested in full, accepted or rejected.
+struct TestedPose
+{
+  std::string part;
+  double score = 0;  ///< confidence()
+  PoseQuality quality;
+  bool accepted = false;
+  /// It hits some instance of its part, also one that a better pose has hit: the score speaks of the pose, not of the
+  /// selection.
+  bool right = false;
+};
+
 /// One timed run of the detector.
 struct RunTime
 {
@@ -74,6 +86,7 @@ struct JudgedScene
   std::vector<JudgedEstimate> estimates;             ///< best first
   std::vector<std::optional<std::size_t>> found_by;  ///< per instance: index into estimates
   std::vector<bool> found_by_mean_distance;          ///< per instance: the same with ADD-S as the error
+  std::vector<TestedPose> tested;                    ///< for the caller to fill (judgeTested)
   std::vector<RunTime> runs;                         ///< for the caller to fill
 };
 
@@ -89,6 +102,11 @@ std::vector<std::optional<std::size_t>> assignGreedily(const Eigen::MatrixXd& er
 ///   number, a part that the scene does not search for, an instance without visible fraction
 JudgedScene judgeScene(const EvaluationScene& scene, const std::vector<PoseEstimate>& estimates,
                        const PartShapes& shapes, const EvaluationParameters& parameters);
+
+/// The poses of a result that have a quality, held against the truth as judgeScene does. Of the rejected ones a result
+/// holds the best DetectorParameters::max_rejected.
+std::vector<TestedPose> judgeTested(const EvaluationScene& scene, const DetectionResult& result,
+                                    const PartShapes& shapes, const EvaluationParameters& parameters);
 
 /// "right", "right up to its turn", "right, but hidden", "duplicate of #2", "off by 3.1 mm, 12.0 deg", "no part there".
 std::string verdictText(const JudgedScene& scene, std::size_t estimate);

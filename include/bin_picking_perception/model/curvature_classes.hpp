@@ -22,11 +22,22 @@ struct CurvatureClasses
 /// NaN is left out. All values alike: both ranges are empty (low_max < 0, high_min infinite), nothing is weighted.
 CurvatureClasses classesFromHistogram(const std::vector<float>& curvature);
 
-/// Fills the curvature part of the quantizer: the given step, or, if it is 0, AUTOMATIC_CURVATURE_BINS equal bins
-/// between the 5th and 95th percentile; one bin (four-dimensional features) where the part's curvature hardly varies.
-/// \param scale what counts as "hardly": a tenth of it (1 / curvature radius, or 1 for the normal variation)
-void chooseCurvatureBins(FeatureQuantizer& quantizer, const std::vector<float>& curvature, double step, double scale);
-
-constexpr int AUTOMATIC_CURVATURE_BINS = 5;
+constexpr int MIN_AUTOMATIC_CURVATURE_BINS = 3;  ///< fewer sort out too little
+constexpr int MAX_AUTOMATIC_CURVATURE_BINS = 5;  ///< more, and scenes often miss the model's bin
 constexpr int MAX_CURVATURE_BINS = 64;
+/// Of 1 / curvature radius, or of 1 for the normal variation: a part that varies by less has one curvature.
+constexpr double MIN_CURVATURE_RANGE = 0.1;
+
+/// From the 5th to the 95th percentile; NaN is left out.
+double curvatureRange(const std::vector<float>& curvature);
+
+/// Bins of four standard deviations of a measurement in this range, at most MAX_AUTOMATIC_CURVATURE_BINS; so many where
+/// the repeatability is not known (0).
+int distinguishableBins(double range, double repeatability);
+
+/// Fills the curvature part of the quantizer: the given step, or, if it is 0, so many equal bins between the 5th and
+/// 95th percentile; one bin (four-dimensional features) where the part's curvature hardly varies.
+/// \param scale of which less than MIN_CURVATURE_RANGE is "hardly"
+void chooseCurvatureBins(FeatureQuantizer& quantizer, const std::vector<float>& curvature, double step, double scale,
+                         int automatic_bins = MAX_AUTOMATIC_CURVATURE_BINS);
 }  // namespace bin_picking

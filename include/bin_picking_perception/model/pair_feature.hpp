@@ -17,7 +17,8 @@ enum class FeatureKind
 {
   Ppf,               ///< the first four of Equation 5 (Drost et al. 2010)
   CurPpfUnweighted,  ///< all six, every vote counts 1
-  CurPpf             ///< all six, votes weighted by Equation 8
+  CurPpf,            ///< all six, votes weighted by Equation 8
+  Auto               ///< CurPpf where the part's curvature pays, otherwise Ppf; a trained model has one of them
 };
 
 /// Equation 5: (|d|, angle(n1, d), angle(n2, d), angle(n1, n2), q1, q2) with d = p2 - p1. Asymmetric:

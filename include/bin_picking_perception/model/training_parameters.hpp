@@ -17,9 +17,10 @@ struct TrainingParameters
   double surface_spacing = 0;  // 0: half the leaf
   int seed = 1;
   double normal_radius = 0;  // 0: 1.3 leaf
-  FeatureKind feature = FeatureKind::CurPpf;
+  FeatureKind feature = FeatureKind::Auto;
   CurvatureMeasure curvature_measure = CurvatureMeasure::MeanCurvature;
-  double curvature_radius = 0;           // 0: 3.3 leaf, as in the paper (10 mm at 3 mm)
+  double curvature_radius = 0;  // 0: 3.3 leaf, as in the paper (10 mm at 3 mm)
+  bool curvature_in_views = true;
   double d_dist = 0;                     // 0: 0.6 matching_leaf
   double d_angle = 0.20943951023931953;  // 12 degrees
   double d_cur = 0;                      // 0: from the spread of the part's curvature

@@ -29,6 +29,13 @@ OrientedPoints voxelDownsample(const OrientedPoints& dense, double leaf);
 std::vector<Eigen::Vector3f> estimateNormals(const OrientedPoints& queries, const OrientedPoints& support,
                                              double radius, double max_normal_angle, const Executor& executor);
 
+/// The downsampled points with normals by plane fits that do not reach around edges.
+OrientedPoints resamplePoints(const OrientedPoints& dense, double leaf, double normal_radius, const Executor& executor);
+
+/// Curvature from all of the surface around each point but the far sides of walls. NaN where too little is there.
+std::vector<float> allRoundCurvature(const OrientedPoints& points, const OrientedPoints& dense,
+                                     CurvatureMeasure measure, double radius, const Executor& executor);
+
 /// Downsampling, normals and curvature of Section 2.1.1.
 OrientedPoints resampleSurface(const OrientedPoints& dense, const SurfaceResampling& resampling,
                                const Executor& executor);

@@ -174,6 +174,7 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
         gatherOutlineEvidence(model, visible, T, scene.surroundings, leaf, leaf + OUTLINE_NOISE * scene.noise).share();
     quality.surface_share = surfaceShare(model, T, scene.grid, near);
     quality.bin_penetration = scene.bin ? binPenetration(model.surface, T, *scene.bin) : 0;
+    detection.quality = quality;
   }
   detection.visible_fraction = evidence.visibleFraction();
   detection.rms = evidence.rms;

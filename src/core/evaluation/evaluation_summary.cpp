@@ -31,6 +31,7 @@ public:
     ++figures_.scenes;
     const bool has_pickable = countInstances(scene);
     countEstimates(scene);
+    countTested(scene);
     if (has_pickable)
       countFirst(scene);
     for (const std::string& part : scene.scene.parts)
@@ -45,6 +46,8 @@ public:
     figures.rotation = spread(rotations_);
     figures.mean_distance = spread(mean_distances_);
     figures.average_precision = averagePrecision(outcomes_, figures.pickable);
+    figures.tested = calibration(tested_);
+    figures.returned = calibration(returned_);
     return figures;
   }
 
@@ -104,6 +107,17 @@ private:
     }
   }
 
+  void countTested(const JudgedScene& scene)
+  {
+    for (const TestedPose& pose : scene.tested)
+      if (concerns(pose.part))
+      {
+        tested_.push_back({pose.score, pose.right});
+        if (pose.accepted)
+          returned_.push_back(tested_.back());
+      }
+  }
+
   void countFirst(const JudgedScene& scene)
   {
     for (FirstPrecision& first : figures_.first)
@@ -135,6 +149,8 @@ private:
   std::vector<double> levels_;
   EvaluationFigures figures_;
   std::vector<ScoredOutcome> outcomes_;
+  std::vector<ScoredOutcome> tested_;
+  std::vector<ScoredOutcome> returned_;
   std::vector<double> translations_;
   std::vector<double> rotations_;
   std::vector<double> mean_distances_;

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "html_calibration.hpp"
 #include "html_parts.hpp"
 #include "html_scene_card.hpp"
 
@@ -37,6 +38,7 @@ public:
     writeHead();
     writeTiles();
     writeParts();
+    out_ << calibrationSection(all_.tested, all_.returned);
     writeStages();
     writeScenes();
     writeDefinitions();
@@ -248,6 +250,9 @@ private:
             "is one miss.</dd>\n"
          << "<dt>average precision</dt><dd>Area under the precision over the recall, scores pooled over all "
             "scenes.</dd>\n"
+         << "<dt>score against truth</dt><dd>Of all poses that were tested in full, the rejected ones too; right if it "
+            "hits any part of its kind. Brier score: mean square of score less outcome (1 or 0); expected calibration "
+            "error: by how much a tenth's mean score is off its share of right poses, mean over the poses.</dd>\n"
          << "<dt>95 % sure</dt><dd>Wilson interval: where the true share lies, given how few were "
             "counted.</dd>\n</dl>\n";
   }

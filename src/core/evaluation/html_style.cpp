@@ -32,6 +32,9 @@ h2 { font-size: 17px; margin: 36px 0 12px; }
 .track i { position: absolute; top: 0; bottom: 0; border-radius: 3px; background: var(--accent); opacity: .4; }
 .track b { position: absolute; top: -3px; width: 4px; height: 12px; margin-left: -2px; border-radius: 2px;
   background: var(--accent); }
+.track u { position: absolute; top: -2px; width: 10px; height: 10px; margin-left: -5px; border-radius: 50%;
+  border: 2px solid var(--ink); }
+td.reliability { width: 40%; min-width: 160px; } td.reliability .track { margin-top: 9px; }
 .panel { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { padding: 9px 12px; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line);

@@ -91,6 +91,21 @@ Eigen::MatrixXd errorTable(const JudgedScene& judged, const PartShapes& shapes, 
   return errors;
 }
 
+PoseEstimate estimateOf(const Detection& detection)
+{
+  return {detection.part, detection.T_camera_object, detection.score, detection.undetermined_turn};
+}
+
+bool hitsAny(const PoseEstimate& estimate, const std::vector<TrueInstance>& instances, const PartShape& shape,
+             double limit)
+{
+  return std::any_of(instances.begin(), instances.end(), [&](const TrueInstance& instance) {
+    return instance.part == estimate.part &&
+           middleDistance(shape, estimate.T_camera_object, instance.T_camera_object) < FAR_APART * shape.diameter &&
+           largestDistanceOf(shape, estimate, instance.T_camera_object) < limit;
+  });
+}
+
 /// The column of the smallest entry of a row that is below the limit.
 std::optional<std::size_t> nearestBelow(const Eigen::MatrixXd& errors, std::size_t row, double limit)
 {
@@ -242,6 +257,23 @@ JudgedScene judgeScene(const EvaluationScene& scene, const std::vector<PoseEstim
     measureErrors(e, scene.instances, shape);
   }
   return judged;
+}
+
+std::vector<TestedPose> judgeTested(const EvaluationScene& scene, const DetectionResult& result,
+                                    const PartShapes& shapes, const EvaluationParameters& parameters)
+{
+  std::vector<TestedPose> tested;
+  for (const auto* poses : {&result.detections, &result.rejected})
+    for (const Detection& detection : *poses)
+    {
+      if (!detection.quality)
+        continue;
+      const PartShape& shape = shapes.at(detection.part);
+      tested.push_back(
+          {detection.part, detection.score, *detection.quality, detection.rejection.empty(),
+           hitsAny(estimateOf(detection), scene.instances, shape, parameters.max_error_share * shape.diameter)});
+    }
+  return tested;
 }
 
 const char* toString(Verdict verdict)

@@ -60,10 +60,10 @@ void checkStated(TrainedModel& model, const SelfComparison& surface, double tole
   const std::string found = roundedText(1000 * deviation, 2) + " mm";
   const std::string allowed = roundedText(1000 * tolerance, 2) + " mm";
   if (deviation <= tolerance)
-    model.remarks.push_back("stated; the mesh agrees within " + found);
+    model.remarks.push_back("the symmetry is stated, and the mesh agrees within " + found);
   else
-    model.remarks.push_back("stated, but the mesh contradicts it: a stated turn moves the surface by up to " + found +
-                            ", and at most " + allowed +
+    model.remarks.push_back("the mesh contradicts the stated symmetry: a turn of it moves the surface by up to " +
+                            found + ", and at most " + allowed +
                             " is a symmetry; correct the axes in part.yaml, or leave `symmetry` away to have it found");
 }
 }  // namespace

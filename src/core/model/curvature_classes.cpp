@@ -12,6 +12,7 @@ namespace bin_picking
 namespace
 {
 constexpr int HISTOGRAM_BINS = 64;
+constexpr double TAIL = 0.05;  // of the values at either end share the outermost bins
 
 std::vector<float> sortedFinite(const std::vector<float>& values, bool absolute)
 {
@@ -89,7 +90,22 @@ CurvatureClasses classesFromHistogram(const std::vector<float>& curvature)
   return classes;
 }
 
-void chooseCurvatureBins(FeatureQuantizer& quantizer, const std::vector<float>& curvature, double step, double scale)
+double curvatureRange(const std::vector<float>& curvature)
+{
+  const std::vector<float> sorted = sortedFinite(curvature, false);
+  return sorted.empty() ? 0 : percentile(sorted, 1 - TAIL) - percentile(sorted, TAIL);
+}
+
+int distinguishableBins(double range, double repeatability)
+{
+  constexpr double STEP = 4;  // standard deviations: three quarters of all measurements stay in their bin
+  if (!(repeatability > 0))
+    return MAX_AUTOMATIC_CURVATURE_BINS;
+  return static_cast<int>(std::clamp(range / (STEP * repeatability), 1.0, 1.0 * MAX_AUTOMATIC_CURVATURE_BINS));
+}
+
+void chooseCurvatureBins(FeatureQuantizer& quantizer, const std::vector<float>& curvature, double step, double scale,
+                         int automatic_bins)
 {
   const std::vector<float> sorted = sortedFinite(curvature, false);
   quantizer.curvature_bins = 1;
@@ -97,12 +113,12 @@ void chooseCurvatureBins(FeatureQuantizer& quantizer, const std::vector<float>& 
   quantizer.curvature_min = 0;
   if (sorted.empty())
     return;
-  const double margin = step > 0 ? 0.01 : 0.05;
+  const double margin = step > 0 ? 0.01 : TAIL;
   const double low = percentile(sorted, margin);
   const double high = percentile(sorted, 1 - margin);
-  if (step <= 0 && high - low < 0.1 * scale)
+  if (step <= 0 && high - low < MIN_CURVATURE_RANGE * scale)
     return;
-  quantizer.curvature_step = step > 0 ? step : (high - low) / AUTOMATIC_CURVATURE_BINS;
+  quantizer.curvature_step = step > 0 ? step : (high - low) / automatic_bins;
   quantizer.curvature_min = step > 0 ? std::floor(low / step) * step : low;
   const double bins = std::ceil((high - quantizer.curvature_min) / quantizer.curvature_step - 1e-9);
   quantizer.curvature_bins = static_cast<int>(std::min(std::max(bins, 1.0), static_cast<double>(MAX_CURVATURE_BINS)));

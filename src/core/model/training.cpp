@@ -12,6 +12,7 @@
 #include "bin_picking_perception/scene/surface_resampling.hpp"
 #include "compare_with_itself.hpp"
 #include "creases.hpp"
+#include "learn_curvature.hpp"
 
 namespace bin_picking
 {
@@ -119,7 +120,7 @@ std::vector<std::uint64_t> keepVisible(OrientedPoints& points, const TrainedMode
   return kept_bits;
 }
 
-FeatureQuantizer makeQuantizer(const TrainedModel& model)
+FeatureQuantizer makeQuantizer(const TrainedModel& model, int curvature_bins)
 {
   const TrainingParameters& p = model.parameters;
   FeatureQuantizer quantizer;
@@ -128,8 +129,7 @@ FeatureQuantizer makeQuantizer(const TrainedModel& model)
   quantizer.distance_bins = static_cast<int>(model.diameter / p.d_dist) + 1;
   quantizer.angle_bins = static_cast<int>(std::ceil(M_PI / p.d_angle - 1e-6));
   if (p.feature != FeatureKind::Ppf)
-    chooseCurvatureBins(quantizer, model.points.curvature, p.d_cur,
-                        p.curvature_measure == CurvatureMeasure::MeanCurvature ? 1 / p.curvature_radius : 1.0);
+    chooseCurvatureBins(quantizer, model.points.curvature, p.d_cur, curvatureScale(p), curvature_bins);
   return quantizer;
 }
 
@@ -160,11 +160,11 @@ void checkPoints(const TrainedModel& model)
 
 /// \param visibility per point; empty: every pair counts
 void buildTable(TrainedModel& model, const std::vector<std::uint64_t>& visibility, std::size_t words,
-                const Executor& executor)
+                int curvature_bins, const Executor& executor)
 {
   TrainingParameters& p = model.parameters;
   const std::vector<std::int8_t> classes = classify(model);
-  const FeatureQuantizer quantizer = makeQuantizer(model);
+  const FeatureQuantizer quantizer = makeQuantizer(model, curvature_bins);
   p.d_cur = quantizer.curvature_step;
   PairSelection selection;
   selection.min_distance = p.min_pair_distance;
@@ -202,15 +202,15 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
   report("symmetry");
   compareWithItself(*model, definition, dense);
   report("normals and curvature");
-  model->points =
-      resampleSurface(dense, {p.matching_leaf, p.normal_radius, p.curvature_measure, p.curvature_radius}, executor);
+  model->points = resamplePoints(dense, p.matching_leaf, p.normal_radius, executor);
   const std::size_t words = (model->views.size() + 63) / 64;
   std::vector<std::uint64_t> visibility = keepVisible(model->points, *model, words);
   checkPoints(*model);
+  const int curvature_bins = learnCurvature(*model, dense, executor);
   if (!p.covisible_pairs)
     visibility.clear();
   report("feature table");
-  buildTable(*model, visibility, words, executor);
+  buildTable(*model, visibility, words, curvature_bins, executor);
   return model;
 }
 }  // namespace bin_picking

@@ -23,11 +23,14 @@ void TrainingParameters::visit(ParameterVisitor& v)
   v.field({"seed", "", "seed of the surface sampling; the same seed gives the same model", 0, 2147483647}, seed);
   v.field({"normal_radius", "m", "radius of the plane fit for normals, on part and scene; 0 = 1.3 leaf", 0, 0.2},
           normal_radius);
-  v.field({"feature", "", "Equation 5 with all six dimensions, weighted by Equation 8 or not, or its first four"},
+  v.field({"feature", "",
+           "Equation 5 with all six dimensions, weighted by Equation 8 or not, or its first four; auto: cur_ppf where "
+           "views of the part repeat its curvature well enough to sort by it, otherwise ppf"},
           feature,
           {{"ppf", FeatureKind::Ppf},
            {"cur_ppf_unweighted", FeatureKind::CurPpfUnweighted},
-           {"cur_ppf", FeatureKind::CurPpf}});
+           {"cur_ppf", FeatureKind::CurPpf},
+           {"auto", FeatureKind::Auto}});
   v.field(
       {"curvature_measure", "",
        "Equation 4 (1/m, signed), or the variance of the normals that the published constants fit"},
@@ -35,6 +38,10 @@ void TrainingParameters::visit(ParameterVisitor& v)
       {{"mean_curvature", CurvatureMeasure::MeanCurvature}, {"normal_variation", CurvatureMeasure::NormalVariation}});
   v.field({"curvature_radius", "m", "neighbourhood of the curvature, on part and scene; 0 = 3.3 leaf", 0, 0.5},
           curvature_radius);
+  v.field(
+      {"curvature_in_views", "",
+       "take the curvature of a mesh from rendered views, as scenes show it; otherwise all around, as in the paper"},
+      curvature_in_views);
   v.field({"d_dist", "m", "step of the distance in the feature; 0 = 0.6 matching_leaf", 0, 0.1}, d_dist);
   v.field({"d_angle", "rad", "step of the three angles in the feature, and of alpha in the accumulator", 0.02, 1.0},
           d_angle);

@@ -9,70 +9,15 @@
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/model/depth_renderer.hpp"
 #include "even_directions.hpp"
+#include "view_camera.hpp"
 
 namespace bin_picking
 {
 namespace
 {
-/// Parallel to 0.3 % of sizes, and near enough that single precision tells depths of a millionth of the part.
-constexpr double DISTANCE_IN_DIAMETERS = 200;
 constexpr double MIN_FACING_COSINE = 0.1;
 constexpr double DEPTH_TOLERANCE_PIXELS = 1.5;
 constexpr double DISC_RADIUS_PIXELS = 2;
-constexpr int MIN_SIDE = 8;  // pixels across the part: fewer say nothing about its shape
-constexpr int MAX_SIDE = 4096;
-constexpr int MARGIN = 4;  // pixels of background on each side
-
-/// What all views have in common.
-struct ViewCamera
-{
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< that the cameras look at, part frame
-  double distance = 0;                               ///< metres from there
-  int side = 0;                                      ///< pixels
-  double pixel = 0;                                  ///< metres at the center
-  PinholeCamera intrinsics;
-
-  Pose poseOfObject(const Eigen::Vector3d& direction) const
-  {
-    Eigen::Matrix3d R;
-    R.row(2) = -direction;
-    R.row(0) = direction.unitOrthogonal();
-    R.row(1) = R.row(2).cross(R.row(0));
-    Pose T = Pose::Identity();
-    T.linear() = R;
-    T.translation() = -R * (center + distance * direction);
-    return T;
-  }
-};
-
-ViewCamera makeCamera(const std::vector<Eigen::Vector3f>& points, double pixel)
-{
-  Eigen::Vector3f low = points.front();
-  Eigen::Vector3f high = low;
-  for (const auto& p : points)
-  {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  ViewCamera camera;
-  camera.pixel = pixel;
-  camera.center = (low + high).cast<double>() / 2;
-  double radius = 0;
-  for (const auto& p : points)
-    radius = std::max(radius, (p.cast<double>() - camera.center).norm());
-  const double pixels_across = 2 * radius / pixel;
-  if (!(pixels_across >= MIN_SIDE && pixels_across <= MAX_SIDE))
-    throw ParameterError("with view pixels of " + std::to_string(pixel * 1e3) + " mm the part is " +
-                         std::to_string(pixels_across) + " pixels across, but it must be between " +
-                         std::to_string(MIN_SIDE) + " and " + std::to_string(MAX_SIDE) +
-                         "; change the spacing of the surface points");
-  camera.distance = DISTANCE_IN_DIAMETERS * 2 * radius;
-  // The near side of the part appears a little larger.
-  camera.side = static_cast<int>(std::ceil(pixels_across * (1 + 1 / DISTANCE_IN_DIAMETERS))) + 2 * MARGIN;
-  const double focal_length = camera.distance / pixel;
-  camera.intrinsics = {focal_length, focal_length, (camera.side - 1) / 2.0, (camera.side - 1) / 2.0};
-  return camera;
-}
 
 bool isVisible(const Eigen::Vector3d& p_camera, const Eigen::Vector3d& normal_camera, const DepthRenderer& image,
                double pixel)
@@ -142,7 +87,7 @@ std::vector<ViewTemplate> renderViewTemplates(const TriangleMesh& mesh, const Or
   // Of both: the surface samples may lie a rounding outside the mesh, and must project into the image all the same.
   std::vector<Eigen::Vector3f> outline = mesh.vertices;
   outline.insert(outline.end(), surface.points.begin(), surface.points.end());
-  const ViewCamera camera = makeCamera(outline, pixel);
+  const ViewCamera camera(outline, pixel);
   const std::vector<Eigen::Vector3d> directions = evenDirections(num_views);
   std::vector<ViewTemplate> views(directions.size());
   executor.forEach(directions.size(),

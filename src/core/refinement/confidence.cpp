@@ -5,20 +5,53 @@
 #include <algorithm>
 #include <cmath>
 
+#include "confidence_weights.hpp"
+
 namespace bin_picking
 {
+namespace
+{
+namespace weights = confidence_weights;
+
+// Beyond these limits more is not better, or worse.
+constexpr double MOST_VIOLATION = 0.3;
+constexpr double LEAST_MARGIN = 1;
+constexpr double MOST_MARGIN = 300;
+constexpr double MOST_PENETRATION = 0.02;
+
+/// The inlier share is not among them: beside violation and surface share it says nothing more.
+struct Term
+{
+  const char* name;
+  double weight;
+  double (*value)(const PoseQuality&);
+};
+
+const Term TERMS[] = {
+    {"violation_share", weights::VIOLATION_SHARE,
+     [](const PoseQuality& q) { return -std::sqrt(std::min(q.violation_share, MOST_VIOLATION)); }},
+    {"surface_share", weights::SURFACE_SHARE, [](const PoseQuality& q) { return q.surface_share; }},
+    {"outline_share", weights::OUTLINE_SHARE, [](const PoseQuality& q) { return q.outline_share; }},
+    {"turn_margin", weights::TURN_MARGIN,
+     [](const PoseQuality& q) { return std::log(std::clamp(q.turn_margin, LEAST_MARGIN, MOST_MARGIN)); }},
+    {"bin_penetration", weights::BIN_PENETRATION,
+     [](const PoseQuality& q) { return -std::min(q.bin_penetration, MOST_PENETRATION); }},
+};
+}  // namespace
+
+std::vector<ConfidenceTerm> confidenceTerms(const PoseQuality& quality)
+{
+  std::vector<ConfidenceTerm> terms;
+  for (const Term& term : TERMS)
+    terms.push_back({term.name, term.value(quality)});
+  return terms;
+}
+
 double confidence(const PoseQuality& quality)
 {
-  // Beyond these limits more is not better, or worse.
-  constexpr double MOST_VIOLATION = 0.3;
-  constexpr double LEAST_MARGIN = 0.03;
-  constexpr double MOST_MARGIN = 300;
-  constexpr double MOST_PENETRATION = 0.02;
-  const double evidence = -24.36 + 2.14 * quality.inlier_share -
-                          10.97 * std::min(quality.violation_share, MOST_VIOLATION) + 21.41 * quality.surface_share +
-                          2.77 * quality.outline_share +
-                          0.82 * std::log(std::clamp(quality.turn_margin, LEAST_MARGIN, MOST_MARGIN)) -
-                          471 * std::min(quality.bin_penetration, MOST_PENETRATION);
+  double evidence = weights::CONSTANT;
+  for (const Term& term : TERMS)
+    evidence += term.weight * term.value(quality);
   return 1 / (1 + std::exp(-evidence));
 }
 }  // namespace bin_picking

@@ -130,14 +130,26 @@ std::vector<Eigen::Vector3f> estimateNormals(const OrientedPoints& queries, cons
   return normals;
 }
 
+OrientedPoints resamplePoints(const OrientedPoints& dense, double leaf, double normal_radius, const Executor& executor)
+{
+  constexpr double SAME_FACE_ANGLE = 1.05;  // 60 degrees: a plane is not fitted around an edge
+  OrientedPoints points = voxelDownsample(dense, leaf);
+  points.normals = estimateNormals(points, dense, normal_radius, SAME_FACE_ANGLE, executor);
+  return points;
+}
+
+std::vector<float> allRoundCurvature(const OrientedPoints& points, const OrientedPoints& dense,
+                                     CurvatureMeasure measure, double radius, const Executor& executor)
+{
+  constexpr int MIN_NEIGHBOURS = 8;
+  return estimateCurvature(points, dense, measure, radius, OPPOSITE_WALL_ANGLE, MIN_NEIGHBOURS, executor);
+}
+
 OrientedPoints resampleSurface(const OrientedPoints& dense, const SurfaceResampling& resampling,
                                const Executor& executor)
 {
-  OrientedPoints points = voxelDownsample(dense, resampling.leaf);
-  constexpr double SAME_FACE_ANGLE = 1.05;  // 60 degrees: a plane is not fitted around an edge
-  points.normals = estimateNormals(points, dense, resampling.normal_radius, SAME_FACE_ANGLE, executor);
-  points.curvature = estimateCurvature(points, dense, resampling.measure, resampling.curvature_radius,
-                                       OPPOSITE_WALL_ANGLE, 8, executor);
+  OrientedPoints points = resamplePoints(dense, resampling.leaf, resampling.normal_radius, executor);
+  points.curvature = allRoundCurvature(points, dense, resampling.measure, resampling.curvature_radius, executor);
   return points;
 }
 }  // namespace bin_picking

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <vector>
+
+#include "bin_picking_perception/model/trained_model.hpp"
+
+namespace bin_picking
+{
+/// Curvature of a part's points as the scene's own code measures it: in rendered views, where a fit sees one side of
+/// the part only and smooths its edges. The all-round fit differs from that around thin walls and edges by several
+/// bins.
+struct ViewCurvature
+{
+  /// Per point over the views that see its whole neighbourhood; if none does, over those that see the point; NaN if
+  /// none does either.
+  std::vector<float> mean;
+  /// Robust standard deviation of single views that see the whole neighbourhood, in the unit of the measure; 0: not
+  /// known, no point has two. Views have no noise and measure the model's own points: scenes repeat it less well.
+  double repeatability = 0;
+};
+
+/// \param model its mesh, points, normals and parameters are used
+/// \param pixel of the views, metres: that of the scene's working grid
+ViewCurvature curvatureInViews(const TrainedModel& model, double pixel, const Executor& executor);
+}  // namespace bin_picking
