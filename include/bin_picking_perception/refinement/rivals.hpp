@@ -11,6 +11,9 @@
 
 namespace bin_picking
 {
+/// Margins of rivals are exact up to this: beyond it, more is not surer.
+constexpr double MOST_MARGIN = 100;
+
 /// A pose held against those that its part's near symmetries make of it.
 struct RivalChoice
 {

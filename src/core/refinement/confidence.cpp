@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bin_picking_perception/refinement/rivals.hpp"
 #include "confidence_weights.hpp"
 
 namespace bin_picking
@@ -16,7 +17,6 @@ namespace weights = confidence_weights;
 // Beyond these limits more is not better, or worse.
 constexpr double MOST_VIOLATION = 0.3;
 constexpr double LEAST_MARGIN = 1;
-constexpr double MOST_MARGIN = 300;
 constexpr double MOST_PENETRATION = 0.02;
 
 /// The inlier share is not among them: beside violation and surface share it says nothing more.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 #include "bin_picking_perception/model/slight_turn.hpp"
@@ -48,17 +47,6 @@ Neighbourhood measuredAround(const TrainedModel& model, const Pose& T_camera_obj
   return around;
 }
 
-/// Keeps the points that lie near the surface of one of the poses at least: they may belong to the part.
-void keepConcerned(Neighbourhood& around, const TrainedModel& model, const std::vector<Eigen::Isometry3f>& motions)
-{
-  const float near = 0.7f * model.field.band();
-  const auto strange = [&](const Eigen::Vector3f& p) {
-    return std::none_of(motions.begin(), motions.end(),
-                        [&](const Eigen::Isometry3f& motion) { return std::abs(model.field.at(motion * p)) < near; });
-  };
-  around.points.erase(std::remove_if(around.points.begin(), around.points.end(), strange), around.points.end());
-}
-
 /// Evenly chosen points of the surface; the same ones for all rivals, so that their sampling does not tell them apart.
 struct SurfaceSamples
 {
@@ -80,19 +68,20 @@ bool seenThrough(const DepthGrid& grid, const Eigen::Vector3f& p, float limit)
 {
   constexpr int AROUND[5][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
   const PinholeCamera& camera = grid.camera;
-  const auto u = static_cast<int>(std::lround(camera.fx * static_cast<double>(p.x() / p.z()) + camera.cx));
-  const auto v = static_cast<int>(std::lround(camera.fy * static_cast<double>(p.y() / p.z()) + camera.cy));
-  for (const auto& offset : AROUND)
-  {
-    if (!grid.inside(u + offset[0], v + offset[1]))
-      return false;
-    const int i = grid.index(u + offset[0], v + offset[1]);
-    if (!grid.valid(i) || grid.z[static_cast<std::size_t>(i)] < p.z() + limit)
-      return false;
-  }
-  return true;
+  const float inverse_z = 1 / p.z();
+  const float u = static_cast<float>(camera.fx) * p.x() * inverse_z + static_cast<float>(camera.cx) + 0.5f;
+  const float v = static_cast<float>(camera.fy) * p.y() * inverse_z + static_cast<float>(camera.cy) + 0.5f;
+  if (!(u >= 1 && v >= 1 && u < static_cast<float>(grid.width - 1) && v < static_cast<float>(grid.height - 1)))
+    return false;
+  const int middle = grid.index(static_cast<int>(u), static_cast<int>(v));
+  return std::all_of(std::begin(AROUND), std::end(AROUND), [&](const int(&offset)[2]) {
+    // false for NaN: nothing was measured
+    return grid.z[static_cast<std::size_t>(middle + grid.index(offset[0], offset[1]))] >= p.z() + limit;
+  });
 }
 
+/// What speaks against poses T_camera_object * turn: what was measured off the surface, and what of the surface the
+/// sensor looked through. In squares of a leaf's edge, each at most OUTLIER / 2.
 class Contradiction
 {
 public:
@@ -106,44 +95,84 @@ public:
         samples_(model)
   {}
 
-  void concern(const std::vector<Eigen::Isometry3f>& motions) { keepConcerned(around_, model_, motions); }
+  /// Of every turn. From here on, of the measured points only those count that lie near the surface of one of these
+  /// poses at least: they may belong to the part. What is more than MOST_MARGIN above the least is only known to be so.
+  std::vector<double> ofAll(const std::vector<Pose>& turns)
+  {
+    std::vector<double> against = offSurfaceOfAll(turns);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < turns.size(); ++k)
+    {
+      against[k] += seenThroughShare(turns[k], least + MOST_MARGIN - against[k]);
+      least = std::min(least, against[k]);
+    }
+    return against;
+  }
 
-  /// Of the pose T_camera_object * turn: what was measured off its surface, and what of its surface the sensor looked
-  /// through. In squares of a leaf's edge, each at most OUTLIER / 2.
   double operator()(const Pose& turn) const
   {
-    return 0.5 * (around_.area_per_point * offSurface(turn) +
-                  samples_.area_per_point * static_cast<double>(OUTLIER) * numSeenThrough(T_camera_object_ * turn));
+    double off = 0;
+    const Eigen::Isometry3f T_turned_object = turn.inverse().cast<float>();
+    for (const Eigen::Vector3f& p : around_.points)
+      off += cost(model_.field.at(T_turned_object * p));
+    return 0.5 * around_.area_per_point * off + seenThroughShare(turn, std::numeric_limits<double>::infinity());
   }
 
 private:
-  double offSurface(const Pose& turn) const
+  double cost(float distance) const
   {
-    const Eigen::Isometry3f T_turned_object = turn.inverse().cast<float>();
-    const auto scale = static_cast<float>(2 / tolerance_);
-    double sum = 0;
-    for (const Eigen::Vector3f& p : around_.points)
-    {
-      const float residual = model_.field.at(T_turned_object * p) * scale;
-      sum += static_cast<double>(std::min(residual * residual, OUTLIER));
-    }
-    return sum;
+    const float residual = distance * static_cast<float>(2 / tolerance_);
+    return static_cast<double>(std::min(residual * residual, OUTLIER));
   }
 
-  int numSeenThrough(const Pose& T) const
+  std::vector<double> offSurfaceOfAll(const std::vector<Pose>& turns)
+  {
+    std::vector<Eigen::Isometry3f> motions(turns.size());
+    std::transform(turns.begin(), turns.end(), motions.begin(),
+                   [](const Pose& turn) { return turn.inverse().cast<float>(); });
+    const float near = 0.7f * model_.field.band();
+    std::vector<double> sums(turns.size(), 0);
+    std::vector<double> costs(turns.size());
+    std::vector<Eigen::Vector3f> concerned;
+    for (const Eigen::Vector3f& p : around_.points)
+    {
+      float nearest = near;
+      for (std::size_t k = 0; k < motions.size(); ++k)
+      {
+        const float distance = model_.field.at(motions[k] * p);
+        nearest = std::min(nearest, std::abs(distance));
+        costs[k] = cost(distance);
+      }
+      if (nearest >= near)
+        continue;
+      concerned.push_back(p);
+      for (std::size_t k = 0; k < sums.size(); ++k)
+        sums[k] += costs[k];
+    }
+    around_.points = std::move(concerned);
+    for (double& sum : sums)
+      sum *= 0.5 * around_.area_per_point;
+    return sums;
+  }
+
+  /// \param enough where the search may end
+  double seenThroughShare(const Pose& turn, double enough) const
   {
     constexpr float MIN_COSINE = 0.35f;  // flatter, the ray passes the silhouette
-    const Eigen::Isometry3f T_camera_object = T.cast<float>();
+    const Eigen::Isometry3f T = (T_camera_object_ * turn).cast<float>();
     const auto limit = static_cast<float>(0.5 * model_.parameters.leaf + tolerance_);
-    int count = 0;
-    for (const int k : samples_.indices)
+    const double each = 0.5 * samples_.area_per_point * static_cast<double>(OUTLIER);
+    double sum = 0;
+    for (auto k = samples_.indices.begin(); k != samples_.indices.end() && sum <= enough; ++k)
     {
-      const auto i = static_cast<std::size_t>(k);
-      const Eigen::Vector3f p = T_camera_object * model_.surface.points[i];
-      const Eigen::Vector3f normal = T_camera_object.linear() * model_.surface.normals[i];
-      count += p.z() > 0 && -normal.dot(p) > MIN_COSINE * p.norm() && seenThrough(surroundings_, p, limit);
+      const auto i = static_cast<std::size_t>(*k);
+      const Eigen::Vector3f p = T * model_.surface.points[i];
+      const float towards = -(T.linear() * model_.surface.normals[i]).dot(p);
+      if (p.z() > 0 && towards > 0 && towards * towards > MIN_COSINE * MIN_COSINE * p.squaredNorm() &&
+          seenThrough(surroundings_, p, limit))
+        sum += each;
     }
-    return count;
+    return sum;
   }
 
   const TrainedModel& model_;
@@ -262,16 +291,10 @@ RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_ob
   if (model.near_symmetries.empty())
     return choice;
   std::vector<Pose> turns = {Pose::Identity()};
-  std::vector<Eigen::Isometry3f> motions = {Eigen::Isometry3f::Identity()};
   for (const NearSymmetry& near : model.near_symmetries)
-  {
     turns.push_back(near.T_object_object);
-    motions.push_back(near.T_object_object.inverse().cast<float>());
-  }
   Contradiction contradiction(model, T_camera_object, grid, surroundings, tolerance);
-  contradiction.concern(motions);
-  std::vector<double> against(turns.size());
-  std::transform(turns.begin(), turns.end(), against.begin(), std::cref(contradiction));
+  const std::vector<double> against = contradiction.ofAll(turns);
   const auto best = static_cast<std::size_t>(std::min_element(against.begin(), against.end()) - against.begin());
   if (best > 0)
   {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "bin_picking_perception/common/kd_tree.hpp"
+#include "bin_picking_perception/refinement/rivals.hpp"
 
 namespace bin_picking
 {
@@ -47,7 +48,7 @@ void VerificationParameters::visit(ParameterVisitor& v)
   v.field({"min_turn_margin", "",
            "a pose is ambiguous if another one, turned so that most of the part looks the same, is "
            "contradicted by less than this more, in squares of a leaf's edge; 0 accepts guesses",
-           0, 1000},
+           0, MOST_MARGIN},
           min_turn_margin);
   v.field({"accept_undetermined_turns", "",
            "return a pose whose turn about an axis cannot be told, if all else is known and what tells the turn is "
