@@ -22,7 +22,7 @@ struct VotingParameters
   double curvature_spread = 0.3;
   bool curvature_wildcard = true;
   int max_bucket = 0;
-  int max_votes = 15000;
+  int max_votes = 30000;
   bool skip_repeated = true;
   int peaks_per_reference = 12;
   double min_peak_share = 0.4;
