@@ -146,7 +146,13 @@ void accumulatorPeaks(benchmark::State& state)
   accumulator.clear();
   vote(pairsOfReferences().front(), workbench().model->table, accumulator);
   for (auto _ : state)
-    benchmark::DoNotOptimize(accumulator.peaks(parameters.sum_adjacent_angles, parameters.min_peak_share));
+  {
+    int left = parameters.peaks_per_reference;
+    accumulator.forEachPeak(parameters.sum_adjacent_angles, parameters.min_peak_share, [&](const auto& peak) {
+      benchmark::DoNotOptimize(peak);
+      return --left > 0;
+    });
+  }
   countPer(state, "reference", 1);
 }
 BENCHMARK(accumulatorPeaks)->Unit(benchmark::kMicrosecond);

@@ -217,6 +217,51 @@ TEST(ChooseReferences, drawsTheAskedShareEvenly)
   EXPECT_TRUE(chooseReferences({}, voting).empty());
 }
 
+/// Points a leaf apart on a square plate, `width` of them along each edge.
+std::vector<Eigen::Vector3f> plate(int width, double leaf, const Eigen::Vector3f& corner)
+{
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < width * width; ++i)
+    points.push_back(corner + static_cast<float>(leaf) *
+                                  Eigen::Vector3f(static_cast<float>(i % width), static_cast<float>(i / width), 0));
+  return points;
+}
+
+TEST(SpreadReferences, drawsTheAskedShareOfAPlane)
+{
+  VotingParameters voting;
+  voting.reference_share = 0.04;  // cubes of 5 x 5 points
+  voting.min_references = 1;
+  const auto points = plate(100, LEAF, Eigen::Vector3f::Constant(0.5f * static_cast<float>(LEAF)));
+  EXPECT_EQ(spreadReferences(points, LEAF, voting).size(), 400u);
+  EXPECT_TRUE(spreadReferences({}, LEAF, voting).empty());
+}
+
+TEST(SpreadReferences, givesASmallSurfaceItsOwn)
+{
+  VotingParameters voting;
+  voting.reference_share = 0.04;
+  voting.min_references = 1;
+  auto points = plate(100, LEAF, Eigen::Vector3f::Zero());
+  const std::size_t large = points.size();
+  const auto patch = plate(3, LEAF, Eigen::Vector3f(0, 0, 0.05f));  // 9 points: a share of 4 % may miss them
+  points.insert(points.end(), patch.begin(), patch.end());
+  const auto references = spreadReferences(points, LEAF, voting);
+  EXPECT_TRUE(std::is_sorted(references.begin(), references.end()));
+  EXPECT_GE(references.back(), static_cast<int>(large));
+}
+
+TEST(SpreadReferences, drawsMoreWhereTheyWouldBeTooFew)
+{
+  VotingParameters voting;
+  voting.reference_share = 0.04;
+  voting.min_references = 30;
+  const auto points = plate(10, LEAF, Eigen::Vector3f::Constant(0.5f * static_cast<float>(LEAF)));
+  EXPECT_GE(spreadReferences(points, LEAF, voting).size(), 30u);
+  voting.min_references = 1000;
+  EXPECT_EQ(spreadReferences(points, LEAF, voting).size(), points.size());
+}
+
 TEST(AveragePoses, isRigidAndBetweenItsPoses)
 {
   std::mt19937 random(5);

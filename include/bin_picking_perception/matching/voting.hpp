@@ -15,17 +15,17 @@ class Executor;
 
 struct VotingParameters
 {
-  double reference_share = 0.033;
+  double reference_share = 0.04;
   int min_references = 8;
   double max_pair_distance = 1.0;
   int weight = 1;
   double curvature_spread = 0.3;
   bool curvature_wildcard = true;
   int max_bucket = 0;
-  int max_votes = 15000;
+  int max_votes = 30000;
   bool skip_repeated = true;
-  int peaks_per_reference = 2;
-  double min_peak_share = 0.7;
+  int peaks_per_reference = 12;
+  double min_peak_share = 0.4;
   bool sum_adjacent_angles = true;
 
   void visit(ParameterVisitor& v);
@@ -56,6 +56,12 @@ struct VotingResult
 
 /// Every n-th of `candidates`, so that about reference_share of them, but at least min_references, are drawn.
 std::vector<int> chooseReferences(const std::vector<int>& candidates, const VotingParameters& parameters);
+
+/// The first point of every cube of a grid, so that small and hidden parts have their references too. A cube's edge is
+/// `leaf`, the distance of the points, over the root of reference_share: of a plane across the cubes that share is
+/// drawn, of broken surfaces more. Smaller cubes where they are fewer than min_references.
+std::vector<int> spreadReferences(const std::vector<Eigen::Vector3f>& points, double leaf,
+                                  const VotingParameters& parameters);
 
 /// Sections 2.2.2 and 2.2.3. For each reference point: Equation 5 with every sample within the part's diameter,
 /// look-up, weighted votes (Equation 8) in the accumulator of model points x angle steps, and its peaks as poses

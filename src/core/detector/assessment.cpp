@@ -9,12 +9,13 @@
 
 namespace bin_picking
 {
-double poseScore(const PoseEvidence& evidence, const VerificationParameters& parameters)
+double promise(const PoseEvidence& evidence, const VerificationParameters& parameters)
 {
   // The inlier share says how right the pose is, the visible fraction how much there is to refine; neither ranks well
-  // alone.
-  constexpr double VISIBLE_EXPONENT = 0.7;
-  return evidence.inlierShare(parameters.unmeasured_weight) * std::pow(evidence.visibleFraction(), VISIBLE_EXPONENT);
+  // alone. A wrong pose on a plane explains much, but is seen through where it ends: that is what gives it away.
+  const double through = 1 - evidence.violationShare();
+  return evidence.inlierShare(parameters.unmeasured_weight) * std::sqrt(evidence.visibleFraction()) * through *
+         through * through * through;
 }
 
 double depthTolerance(const PreparedScene& scene, const TrainedModel& model, const VerificationParameters& parameters)

@@ -111,9 +111,9 @@ DetectionResult Detector::detectIn(const PointView& points, const Request& reque
     clock.count("segments", static_cast<double>(segmentation.segments.size()));
     const auto candidates = selectCandidates(segmentation, scene.grid, model, parameters_.segmentation);
     clock.count("candidates", static_cast<double>(candidates.size()));
-    const auto search = planSearch(scene, segmentation, candidates, parameters_);
+    const auto search = planSearch(scene, segmentation, candidates, model, parameters_);
     clock.lap("segmentation");
-    const auto poses = searchPoses(search, model, parameters_, deadline, executor_, clock, result.partial);
+    const auto poses = searchPoses(search, &scene, model, parameters_, deadline, executor_, clock, result.partial);
     auto found =
         refineAndVerify(poses, scene, model, parameters_, comparison_cell, deadline, executor_, clock, result.partial);
     for (auto& pose : found)

@@ -56,10 +56,12 @@ DetectorParameters accuratePreset()
   p.voting.reference_share = 0.1;
   p.voting.min_references = 40;
   p.voting.max_votes = 60000;
-  p.voting.peaks_per_reference = 3;
-  p.clustering.max_clusters = 600;
-  p.verification.max_refined = 240;
+  p.voting.peaks_per_reference = 20;
+  p.voting.min_peak_share = 0.3;
+  p.clustering.max_hypotheses = 2000;
+  p.verification.max_refined = 120;
   p.icp.max_iterations = 16;
+  p.verification.fruitless_rounds = 4;
   return p;
 }
 }  // namespace

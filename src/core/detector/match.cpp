@@ -85,7 +85,7 @@ DetectionResult Detector::match(const OrientedPoints& scene, bool scene_is_part)
 
   std::vector<SearchRegion> regions;
   regions.push_back(std::move(region));
-  const auto poses = searchPoses(regions, model, parameters_, deadline, executor_, clock, result.partial);
+  const auto poses = searchPoses(regions, nullptr, model, parameters_, deadline, executor_, clock, result.partial);
   constexpr std::size_t MAX_REFINED = 10;
   std::vector<Detection> detections(std::min(poses.size(), MAX_REFINED));
   executor_.forEach(detections.size(), [&](std::size_t i) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/refinement/icp.hpp"
 #include "stages.hpp"
 
 namespace bin_picking
@@ -13,24 +14,37 @@ namespace
 /// A pose from votes with what a quick look at the scene says about it.
 struct Ranked
 {
-  const Hypothetical* pose = nullptr;
+  Hypothetical pose;
   double score = 0;
   std::vector<int> cells;  ///< that it would explain
 };
 
-/// Poses from votes are off by about a leaf; so much more is forgiven before they are refined.
-constexpr double UNREFINED = 2;
 constexpr double SAME_DISTANCE = 0.07;  // of the diameter
 
+/// A few steps towards the surface: poses from votes are off by so much that right and wrong ones explain about alike.
+Pose nudge(const Pose& T_camera_object, const PreparedScene& scene, const TrainedModel& model, IcpParameters icp)
+{
+  constexpr std::size_t NUDGE_PIXELS = 200;
+  constexpr int NUDGE_STEPS = 4;
+  if (icp.method != IcpMethod::DistanceField)
+    return T_camera_object;
+  icp.max_iterations = std::min(icp.max_iterations, NUDGE_STEPS);
+  const MeasuredPart measured =
+      measuredNear(model, T_camera_object, scene.grid, scene.normals, scene.edges, NUDGE_PIXELS);
+  return icpDistanceField(model, measured, T_camera_object, icp).T_camera_object;
+}
+
 Ranked lookAt(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
-              const VerificationParameters& parameters, int comparison_cell)
+              const DetectorParameters& parameters, int comparison_cell)
 {
   constexpr std::size_t COARSE_POINTS = 64;
-  const SurfaceIndices facing = facingPoints(model, pose.T_camera_object, COARSE_POINTS);
+  const Pose T = nudge(pose.T_camera_object, scene, model, parameters.icp);
+  // A leaf is forgiven before the pose is refined.
   const PoseEvidence evidence =
-      gatherEvidence(model, facing, pose.T_camera_object, scene.grid, scene.surroundings, scene.normals,
-                     UNREFINED * depthTolerance(scene, model, parameters), parameters);
-  return {&pose, poseScore(evidence, parameters),
+      gatherEvidence(model, facingPoints(model, T, COARSE_POINTS), T, scene.grid, scene.surroundings, scene.normals,
+                     model.parameters.leaf, parameters.verification);
+  return {{T, pose.votes, pose.region},
+          promise(evidence, parameters.verification),
           coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell)};
 }
 
@@ -61,14 +75,14 @@ bool samePlace(const Pose& a, const Pose& b, const TrainedModel& model)
 
 /// All poses, most promising first, each place once.
 std::vector<Ranked> rankPoses(const std::vector<Hypothetical>& poses, const PreparedScene& scene,
-                              const TrainedModel& model, const VerificationParameters& parameters, int comparison_cell,
+                              const TrainedModel& model, const DetectorParameters& parameters, int comparison_cell,
                               const Executor& executor)
 {
   std::vector<Ranked> ranked(poses.size());
-  if (!parameters.enabled)  // the paper: what the votes put first
+  if (!parameters.verification.enabled)  // the paper: what the votes put first
   {
     std::transform(poses.begin(), poses.end(), ranked.begin(), [](const Hypothetical& pose) {
-      return Ranked{&pose, 0, {}};
+      return Ranked{pose, 0, {}};
     });
     return ranked;
   }
@@ -78,7 +92,7 @@ std::vector<Ranked> rankPoses(const std::vector<Hypothetical>& poses, const Prep
   std::vector<Ranked> distinct;
   for (Ranked& candidate : ranked)
     if (std::none_of(distinct.begin(), distinct.end(), [&](const Ranked& better) {
-          return samePlace(better.pose->T_camera_object, candidate.pose->T_camera_object, model);
+          return samePlace(better.pose.T_camera_object, candidate.pose.T_camera_object, model);
         }))
       distinct.push_back(std::move(candidate));
   return distinct;
@@ -122,7 +136,7 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
   const VerificationParameters& verification = parameters.verification;
   // Rounds: what one round has found needs no other explanation in the next. Their size does not depend on the number
   // of threads, so neither do the results.
-  const std::vector<Ranked> ranked = rankPoses(poses, scene, model, verification, comparison_cell, executor);
+  const std::vector<Ranked> ranked = rankPoses(poses, scene, model, parameters, comparison_cell, executor);
   clock.lap("ranking");
   std::vector<Assessed> ready;
   std::vector<int> explained;
@@ -139,7 +153,7 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
     }
     std::vector<Assessed> assessed(round.size());
     executor.forEach(round.size(), [&](std::size_t i) {
-      assessed[i] = assess(*round[i]->pose, scene, model, parameters, comparison_cell);
+      assessed[i] = assess(round[i]->pose, scene, model, parameters, comparison_cell);
     });
     ++fruitless;
     for (Assessed& candidate : assessed)

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/scene/surface_resampling.hpp"
@@ -96,7 +95,7 @@ std::vector<int> allIndices(std::size_t count)
 }  // namespace
 
 std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentation& segmentation,
-                                     const std::vector<CandidateTarget>& candidates,
+                                     const std::vector<CandidateTarget>& candidates, const TrainedModel& model,
                                      const DetectorParameters& parameters)
 {
   std::vector<SearchRegion> regions;
@@ -114,39 +113,37 @@ std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentat
     }
     return regions;
   }
-  // Everything may vote; candidate targets get references of their own on top, so that the parts that lie free are seen
-  // well.
+  // Everything may vote.
   SearchRegion region;
-  const std::vector<int> everything = chooseReferences(allIndices(scene.samples.size()), parameters.voting);
-  std::set<int> references(everything.begin(), everything.end());
-  for (const auto& candidate : candidates)
-  {
-    const auto own = chooseReferences(members[static_cast<std::size_t>(candidate.label)], parameters.voting);
-    references.insert(own.begin(), own.end());
-  }
   region.samples = scene.samples;
-  region.references.assign(references.begin(), references.end());
+  region.references = spreadReferences(scene.samples.points, model.parameters.matching_leaf, parameters.voting);
   region.keep_clusters = parameters.clustering.max_clusters;
   regions.push_back(std::move(region));
   return regions;
 }
 
-std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, const TrainedModel& model,
-                                      const DetectorParameters& parameters, const Deadline& deadline,
-                                      const Executor& executor, StageClock& clock, bool& partial)
+std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, const PreparedScene* scene,
+                                      const TrainedModel& model, const DetectorParameters& parameters,
+                                      const Deadline& deadline, const Executor& executor, StageClock& clock,
+                                      bool& partial)
 {
   std::vector<Hypothetical> poses;
   for (const auto& region : regions)
   {
-    const VotingResult votes = voteForPoses(model, region.samples, region.samples.curvature_complete, region.references,
-                                            parameters.voting, deadline, executor);
+    VotingResult votes = voteForPoses(model, region.samples, region.samples.curvature_complete, region.references,
+                                      parameters.voting, deadline, executor);
     partial = partial || votes.partial;
     clock.count("references", static_cast<double>(votes.statistics.references));
     clock.count("pairs", static_cast<double>(votes.statistics.pairs));
     clock.count("votes", static_cast<double>(votes.statistics.votes));
     clock.count("hypotheses", static_cast<double>(votes.hypotheses.size()));
     clock.lap("voting");
-    const auto clusters = clusterPoses(votes.hypotheses, model, parameters.clustering);
+    if (scene != nullptr && parameters.verification.enabled)
+      votes.hypotheses =
+          keepPromising(std::move(votes.hypotheses), static_cast<std::size_t>(parameters.clustering.max_hypotheses),
+                        *scene, model, parameters.verification, executor);
+    clock.lap("glance");
+    const auto clusters = clusterPoses(std::move(votes.hypotheses), model, parameters.clustering);
     clock.count("clusters", static_cast<double>(clusters.size()));
     for (std::size_t i = 0; i < clusters.size() && static_cast<int>(i) < region.keep_clusters; ++i)
       poses.push_back({clusters[i].T_camera_object, clusters[i].votes, &region});

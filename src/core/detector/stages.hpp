@@ -60,13 +60,21 @@ void describeScene(PreparedScene& scene, const TrainedModel& model, const Detect
                    const Executor& executor, StageClock& clock);
 
 std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentation& segmentation,
-                                     const std::vector<CandidateTarget>& candidates,
+                                     const std::vector<CandidateTarget>& candidates, const TrainedModel& model,
                                      const DetectorParameters& parameters);
 
-/// Voting and clustering in every region. \param partial set if the deadline passed
-std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, const TrainedModel& model,
-                                      const DetectorParameters& parameters, const Deadline& deadline,
-                                      const Executor& executor, StageClock& clock, bool& partial);
+/// The hypotheses that a glance at a few of their points contradicts least, so that every reference point may propose
+/// many.
+std::vector<Hypothesis> keepPromising(std::vector<Hypothesis> hypotheses, std::size_t max_kept,
+                                      const PreparedScene& scene, const TrainedModel& model,
+                                      const VerificationParameters& parameters, const Executor& executor);
+
+/// Voting and clustering in every region. \param scene nullptr: there is no grid to hold hypotheses against
+/// \param partial set if the deadline passed
+std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, const PreparedScene* scene,
+                                      const TrainedModel& model, const DetectorParameters& parameters,
+                                      const Deadline& deadline, const Executor& executor, StageClock& clock,
+                                      bool& partial);
 
 /// A refined pose with the image cells that it explains.
 struct Assessed
@@ -76,7 +84,7 @@ struct Assessed
 };
 
 /// What ranks poses before they are refined, [0, 1].
-double poseScore(const PoseEvidence& evidence, const VerificationParameters& parameters);
+double promise(const PoseEvidence& evidence, const VerificationParameters& parameters);
 
 /// Distance to the part's surface that still explains a measured point, metres.
 double depthTolerance(const PreparedScene& scene, const TrainedModel& model, const VerificationParameters& parameters);

@@ -85,7 +85,7 @@ Accumulator::Peak Accumulator::peakOf(std::uint32_t row, bool sum_adjacent) cons
   return peak;
 }
 
-std::vector<Accumulator::Peak> Accumulator::peaks(bool sum_adjacent, double min_share)
+void Accumulator::findRows(bool sum_adjacent, double min_share)
 {
   std::fill(highest_.begin(), highest_.end(), std::uint16_t{0});
   for (std::uint32_t a = 0; a < num_angles_; ++a)
@@ -99,12 +99,10 @@ std::vector<Accumulator::Peak> Accumulator::peaks(bool sum_adjacent, double min_
   }
   const std::uint16_t highest = highest_.empty() ? 0 : *std::max_element(highest_.begin(), highest_.end());
   const double threshold = std::max(1.0, min_share * highest);
-  std::vector<Peak> peaks;
+  rows_.clear();
   for (std::uint32_t r = 0; r < num_rows_; ++r)
     if (highest_[r] >= threshold)
-      peaks.push_back(peakOf(r, sum_adjacent));
-  std::sort(peaks.begin(), peaks.end(),
-            [](const Peak& a, const Peak& b) { return a.votes != b.votes ? a.votes > b.votes : a.row < b.row; });
-  return peaks;
+      rows_.push_back(std::uint64_t{highest_[r]} << 32 | ~r);
+  std::make_heap(rows_.begin(), rows_.end());
 }
 }  // namespace bin_picking

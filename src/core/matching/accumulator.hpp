@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -29,17 +30,29 @@ public:
     std::uint32_t votes = 0;
   };
 
-  /// The best cell of every row that reaches min_share of the best cell of all, strongest first (ties: lower row).
-  /// \param sum_adjacent a cell counts together with its next neighbour in alpha, and alpha is interpolated between the
-  /// two
-  std::vector<Peak> peaks(bool sum_adjacent, double min_share);
+  /// The best cells of the rows that reach min_share of the best cell of all, strongest first (ties: lower row): visits
+  /// them until `visit(peak)` returns false. \param sum_adjacent a cell counts together with its next neighbour in
+  /// alpha, and alpha is interpolated between the two
+  template <typename Visit>
+  void forEachPeak(bool sum_adjacent, double min_share, const Visit& visit)
+  {
+    // A heap, because mostly only the first few of many rows are wanted.
+    for (findRows(sum_adjacent, min_share); !rows_.empty(); rows_.pop_back())
+    {
+      std::pop_heap(rows_.begin(), rows_.end());
+      if (!visit(peakOf(~static_cast<std::uint32_t>(rows_.back()), sum_adjacent)))
+        return;
+    }
+  }
 
 private:
+  void findRows(bool sum_adjacent, double min_share);
   Peak peakOf(std::uint32_t row, bool sum_adjacent) const;
 
   std::uint32_t num_rows_;
   std::uint32_t num_angles_;
   std::vector<std::uint16_t> cells_;
   std::vector<std::uint16_t> highest_;  ///< per row
+  std::vector<std::uint64_t> rows_;     ///< heap: votes in the upper half, the inverted row in the lower one
 };
 }  // namespace bin_picking

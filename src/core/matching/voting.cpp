@@ -3,6 +3,7 @@
 #include "bin_picking_perception/matching/voting.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -57,11 +58,54 @@ std::vector<int> chooseReferences(const std::vector<int>& candidates, const Voti
 
 namespace
 {
-bool samePose(const Pose& a, const Pose& b, const TrainedModel& model)
+/// Of the points of every cube the middle one in their order.
+std::vector<int> middlesOfCubes(const std::vector<Eigen::Vector3f>& points, double edge)
+{
+  const auto scale = static_cast<float>(1 / edge);
+  std::vector<std::pair<std::array<int, 3>, int>> members(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    const Eigen::Array3i cube = (points[i] * scale).array().floor().cast<int>();
+    members[i] = {{cube.x(), cube.y(), cube.z()}, static_cast<int>(i)};
+  }
+  std::sort(members.begin(), members.end());
+  std::vector<int> middles;
+  for (std::size_t begin = 0, end = 0; begin < members.size(); begin = end)
+  {
+    while (end < members.size() && members[end].first == members[begin].first)
+      ++end;
+    middles.push_back(members[(begin + end) / 2].second);
+  }
+  std::sort(middles.begin(), middles.end());
+  return middles;
+}
+}  // namespace
+
+std::vector<int> spreadReferences(const std::vector<Eigen::Vector3f>& points, double leaf,
+                                  const VotingParameters& parameters)
+{
+  const std::size_t wanted = std::min(points.size(), static_cast<std::size_t>(parameters.min_references));
+  double edge = leaf / std::sqrt(parameters.reference_share);
+  std::vector<int> references = middlesOfCubes(points, edge);
+  for (; references.size() < wanted && edge > 0.5 * leaf; edge *= M_SQRT1_2)
+    references = middlesOfCubes(points, edge * M_SQRT1_2);
+  return references;
+}
+
+namespace
+{
+/// A pose with where it takes the part's middle, so that few of them need a look at their turn.
+struct Placed
+{
+  Pose T_camera_object;
+  Eigen::Vector3d center;
+};
+
+bool samePose(const Placed& a, const Placed& b, double diameter)
 {
   constexpr double SAME_TRACE = 2.75517;  // 1 + 2 cos(0.5 rad), of the turn from one to the other
-  return (a * model.center - b * model.center).norm() < 0.1 * model.diameter &&
-         a.linear().cwiseProduct(b.linear()).sum() > SAME_TRACE;
+  return (a.center - b.center).squaredNorm() < 0.01 * diameter * diameter &&
+         a.T_camera_object.linear().cwiseProduct(b.T_camera_object.linear()).sum() > SAME_TRACE;
 }
 
 /// The strongest peaks that are different poses (Equation 6).
@@ -71,22 +115,23 @@ std::vector<Hypothesis> extractPoses(const VotingScene& scene, std::size_t refer
   const Pose T_camera_local =
       alignToLocalFrame(scene.points.points[reference], scene.points.normals[reference]).cast<double>().inverse();
   std::vector<Hypothesis> hypotheses;
-  for (const auto& peak : accumulator.peaks(scene.parameters.sum_adjacent_angles, scene.parameters.min_peak_share))
-  {
-    const std::uint32_t m = model.table.references()[peak.row];
-    const Pose T_local_object = alignToLocalFrame(model.points.points[m], model.points.normals[m]).cast<double>();
-    const Pose T_camera_object =
-        T_camera_local * Eigen::AngleAxisd(static_cast<double>(peak.alpha), Eigen::Vector3d::UnitX()) * T_local_object;
-    const bool known = std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& other) {
-      return samePose(other.T_camera_object, T_camera_object, model);
-    });
-    if (known)
-      continue;
-    hypotheses.push_back(
-        {T_camera_object, static_cast<double>(peak.votes), static_cast<int>(reference), static_cast<int>(m)});
-    if (static_cast<int>(hypotheses.size()) == scene.parameters.peaks_per_reference)
-      break;
-  }
+  std::vector<Placed> known;
+  accumulator.forEachPeak(
+      scene.parameters.sum_adjacent_angles, scene.parameters.min_peak_share, [&](const Accumulator::Peak& peak) {
+        const std::uint32_t m = model.table.references()[peak.row];
+        const Pose T_local_object = alignToLocalFrame(model.points.points[m], model.points.normals[m]).cast<double>();
+        const Pose T_camera_object = T_camera_local *
+                                     Eigen::AngleAxisd(static_cast<double>(peak.alpha), Eigen::Vector3d::UnitX()) *
+                                     T_local_object;
+        const Placed placed{T_camera_object, T_camera_object * model.center};
+        if (std::any_of(known.begin(), known.end(),
+                        [&](const Placed& other) { return samePose(other, placed, model.diameter); }))
+          return true;
+        known.push_back(placed);
+        hypotheses.push_back(
+            {T_camera_object, static_cast<double>(peak.votes), static_cast<int>(reference), static_cast<int>(m)});
+        return static_cast<int>(hypotheses.size()) < scene.parameters.peaks_per_reference;
+      });
   return hypotheses;
 }
 

@@ -96,9 +96,15 @@ double PoseEvidence::matchingRate() const
 const ViewTemplate& nearestView(const TrainedModel& model, const Pose& T_camera_object)
 {
   const Eigen::Vector3f direction = (T_camera_object.inverse().translation() - model.center).normalized().cast<float>();
-  return *std::max_element(model.views.begin(), model.views.end(), [&](const ViewTemplate& a, const ViewTemplate& b) {
-    return a.direction.dot(direction) < b.direction.dot(direction);
-  });
+  const ViewTemplate* nearest = &model.views.front();
+  float best = -2;
+  for (const ViewTemplate& view : model.views)
+    if (const float cosine = view.direction.dot(direction); cosine > best)
+    {
+      best = cosine;
+      nearest = &view;
+    }
+  return *nearest;
 }
 
 SurfaceIndices facingPoints(const TrainedModel& model, const Pose& T_camera_object, std::size_t max_points)

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <algorithm>
+
+#include "bin_picking_perception/common/parallel.hpp"
+#include "stages.hpp"
+
+namespace bin_picking
+{
+std::vector<Hypothesis> keepPromising(std::vector<Hypothesis> hypotheses, std::size_t max_kept,
+                                      const PreparedScene& scene, const TrainedModel& model,
+                                      const VerificationParameters& parameters, const Executor& executor)
+{
+  if (hypotheses.size() <= max_kept)
+    return hypotheses;
+  constexpr std::size_t GLANCE_POINTS = 20;
+  constexpr std::size_t BLOCK = 64;
+  // The pose of one reference point is off by about the distance of the points that voted.
+  const double tolerance = model.parameters.matching_leaf;
+  std::vector<std::pair<double, std::size_t>> ranked(hypotheses.size());
+  executor.forEach((hypotheses.size() + BLOCK - 1) / BLOCK, [&](std::size_t block) {
+    for (std::size_t i = block * BLOCK; i < std::min(hypotheses.size(), (block + 1) * BLOCK); ++i)
+    {
+      const Pose& T = hypotheses[i].T_camera_object;
+      const PoseEvidence evidence = gatherEvidence(model, facingPoints(model, T, GLANCE_POINTS), T, scene.grid,
+                                                   scene.surroundings, scene.normals, tolerance, parameters);
+      ranked[i] = {-promise(evidence, parameters), i};
+    }
+  });
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<Hypothesis> kept;
+  kept.reserve(max_kept);
+  for (std::size_t k = 0; k < max_kept; ++k)
+    kept.push_back(hypotheses[ranked[k].second]);
+  return kept;
+}
+}  // namespace bin_picking
