@@ -31,7 +31,6 @@ DetectorParameters paperPreset()
 {
   DetectorParameters p;
   p.segmentation.method = SegmentationMethod::Watershed;
-  p.segmentation.step = 1;
   p.segmentation.veto = true;
   p.voting.reference_share = 0.2;
   p.voting.min_references = 1;

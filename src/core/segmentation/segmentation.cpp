@@ -24,16 +24,24 @@ std::vector<std::uint8_t> onWhite(std::vector<std::uint8_t> gray)
   return gray;
 }
 
+struct Box
+{
+  int u_min = std::numeric_limits<int>::max();
+  int u_max = -1;
+  int v_min = std::numeric_limits<int>::max();
+  int v_max = -1;
+};
+
 /// Every step-th pixel of every step-th row. Unlike means of blocks these keep the area of a part, whose border blocks
 /// are only partly measured.
-DepthGrid thinned(const DepthGrid& fine, int step)
+DepthGrid thinned(const DepthGrid& fine, const Box& box, int step)
 {
   const PinholeCamera& c = fine.camera;
-  DepthGrid grid = makeGrid((fine.width + step - 1) / step, (fine.height + step - 1) / step,
-                            {c.fx / step, c.fy / step, c.cx / step, c.cy / step});
+  DepthGrid grid = makeGrid((box.u_max - box.u_min) / step + 1, (box.v_max - box.v_min) / step + 1,
+                            {c.fx / step, c.fy / step, (c.cx - box.u_min) / step, (c.cy - box.v_min) / step});
   std::size_t to = 0;
-  for (int v = 0; v < fine.height; v += step)
-    for (int u = 0; u < fine.width; u += step, ++to)
+  for (int v = box.v_min; v <= box.v_max; v += step)
+    for (int u = box.u_min; u <= box.u_max; u += step, ++to)
     {
       const auto from = static_cast<std::size_t>(fine.index(u, v));
       grid.x[to] = fine.x[from];
@@ -41,6 +49,33 @@ DepthGrid thinned(const DepthGrid& fine, int step)
       grid.z[to] = fine.z[from];
     }
   return grid;
+}
+
+/// What holds all measured pixels with a border of pixels without data, as far as the picture goes, so that it is
+/// divided as the whole picture would be; it begins at multiples of the step. Empty if nothing is measured.
+Box measuredPart(const DepthGrid& grid, int step)
+{
+  Box box;
+  for (int v = 0; v < grid.height; ++v)
+    for (int u = 0; u < grid.width; ++u)
+      if (grid.valid(grid.index(u, v)))
+        box = {std::min(box.u_min, u), std::max(box.u_max, u), std::min(box.v_min, v), v};
+  if (box.u_max < 0)
+    return box;
+  const auto before = [&](int first) { return std::max(0, first / step - 1) * step; };
+  return {before(box.u_min), std::min(grid.width - 1, box.u_max + step), before(box.v_min),
+          std::min(grid.height - 1, box.v_max + step)};
+}
+
+/// The values of a part of the picture in the whole, 0 around them.
+template <typename Value>
+std::vector<Value> placed(const std::vector<Value>& part, int part_width, int u, int v, int width, int height)
+{
+  std::vector<Value> whole(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
+  for (std::size_t from = 0; from < part.size(); from += static_cast<std::size_t>(part_width), ++v)
+    std::copy_n(part.begin() + static_cast<std::ptrdiff_t>(from), part_width,
+                whole.begin() + static_cast<std::ptrdiff_t>(v) * width + u);
+  return whole;
 }
 
 std::vector<std::int32_t> labelScene(const DepthGrid& grid, const std::vector<std::uint8_t>& gray,
@@ -59,14 +94,6 @@ std::vector<std::int32_t> labelScene(const DepthGrid& grid, const std::vector<st
   std::transform(grid.z.begin(), grid.z.end(), labels.begin(), [](float z) { return std::isnan(z) ? 0 : 1; });
   return labels;
 }
-
-struct Box
-{
-  int u_min = std::numeric_limits<int>::max();
-  int u_max = -1;
-  int v_min = std::numeric_limits<int>::max();
-  int v_max = -1;
-};
 
 /// Sets small groups of zeros within a border of zeros. Missing pixels are not contours; the views, which are compared
 /// with, have none.
@@ -206,19 +233,30 @@ void SegmentationParameters::visit(ParameterVisitor& v)
           min_segment_area);
 }
 
-Segmentation segmentScene(const DepthGrid& fine, const SegmentationParameters& parameters, const Bin* bin,
+Segmentation segmentScene(const DepthGrid& scene, const SegmentationParameters& parameters, const Bin* bin,
                           const Executor& executor)
 {
-  const DepthGrid grid = thinned(fine, parameters.step);
+  const int step = parameters.step;
+  const int width = (scene.width + step - 1) / step;
+  const int height = (scene.height + step - 1) / step;
   Segmentation segmentation;
-  segmentation.step = parameters.step;
-  segmentation.width = grid.width;
-  segmentation.height = grid.height;
-  segmentation.gray = depthToGray(grid, parameters, bin);
-  if (grid.size() == 0)
-    return segmentation;
-  segmentation.labels = labelScene(grid, segmentation.gray, parameters, executor);
-  segmentation.segments = measureSegments(segmentation, grid, executor);
+  segmentation.step = step;
+  const Box box = measuredPart(scene, step);
+  if (box.u_max >= 0)
+  {
+    const DepthGrid grid = thinned(scene, box, step);
+    segmentation.width = grid.width;
+    segmentation.height = grid.height;
+    segmentation.gray = depthToGray(grid, parameters, bin);
+    segmentation.labels = labelScene(grid, segmentation.gray, parameters, executor);
+    segmentation.segments = measureSegments(segmentation, grid, executor);
+  }
+  const int u = std::min(box.u_min / step, width);
+  const int v = std::min(box.v_min / step, height);
+  segmentation.gray = placed(segmentation.gray, segmentation.width, u, v, width, height);
+  segmentation.labels = placed(segmentation.labels, segmentation.width, u, v, width, height);
+  segmentation.width = width;
+  segmentation.height = height;
   return segmentation;
 }
 }  // namespace bin_picking
