@@ -57,7 +57,7 @@ DetectorParameters accuratePreset()
   p.voting.max_votes = 60000;
   p.voting.peaks_per_reference = 20;
   p.voting.min_peak_share = 0.3;
-  p.clustering.max_hypotheses = 2000;
+  p.clustering.poses_per_reference = 4;
   p.verification.max_refined = 120;
   p.icp.max_iterations = 16;
   p.verification.fruitless_rounds = 4;

@@ -7,12 +7,10 @@
 
 namespace bin_picking
 {
-std::vector<Hypothesis> keepPromising(std::vector<Hypothesis> hypotheses, std::size_t max_kept,
+std::vector<Hypothesis> keepPromising(const std::vector<Hypothesis>& hypotheses, std::size_t per_reference,
                                       const PreparedScene& scene, const TrainedModel& model,
                                       const VerificationParameters& parameters, const Executor& executor)
 {
-  if (hypotheses.size() <= max_kept)
-    return hypotheses;
   constexpr std::size_t GLANCE_POINTS = 20;
   constexpr std::size_t BLOCK = 64;
   // The pose of one reference point is off by about the distance of the points that voted.
@@ -27,11 +25,17 @@ std::vector<Hypothesis> keepPromising(std::vector<Hypothesis> hypotheses, std::s
       ranked[i] = {-promise(evidence, parameters), i};
     }
   });
-  std::sort(ranked.begin(), ranked.end());
+  // A reference point lies on one part: few of its poses are worth more, however good those of others look.
   std::vector<Hypothesis> kept;
-  kept.reserve(max_kept);
-  for (std::size_t k = 0; k < max_kept; ++k)
-    kept.push_back(hypotheses[ranked[k].second]);
+  for (std::size_t begin = 0, end = 0; begin < ranked.size(); begin = end)
+  {
+    while (end < ranked.size() && hypotheses[end].reference == hypotheses[begin].reference)
+      ++end;
+    const auto first = ranked.begin() + static_cast<std::ptrdiff_t>(begin);
+    std::sort(first, ranked.begin() + static_cast<std::ptrdiff_t>(end));
+    for (std::size_t k = begin; k < std::min(end, begin + per_reference); ++k)
+      kept.push_back(hypotheses[ranked[k].second]);
+  }
   return kept;
 }
 }  // namespace bin_picking

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/scene/surface_resampling.hpp"
@@ -113,10 +114,23 @@ std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentat
     }
     return regions;
   }
-  // Everything may vote.
+  // Everything may vote; candidate targets get references of their own on top, so that the parts that lie free are seen
+  // well.
   SearchRegion region;
+  const std::vector<int> everything =
+      spreadReferences(scene.samples.points, model.parameters.matching_leaf, parameters.voting);
+  std::set<int> references(everything.begin(), everything.end());
+  for (const auto& candidate : candidates)
+  {
+    const std::vector<int>& own = members[static_cast<std::size_t>(candidate.label)];
+    const auto chosen = std::count_if(own.begin(), own.end(), [&](int i) { return references.count(i) > 0; });
+    if (chosen >= parameters.voting.min_references)
+      continue;
+    const auto more = chooseReferences(own, parameters.voting);
+    references.insert(more.begin(), more.end());
+  }
   region.samples = scene.samples;
-  region.references = spreadReferences(scene.samples.points, model.parameters.matching_leaf, parameters.voting);
+  region.references.assign(references.begin(), references.end());
   region.keep_clusters = parameters.clustering.max_clusters;
   regions.push_back(std::move(region));
   return regions;
@@ -140,8 +154,8 @@ std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, 
     clock.lap("voting");
     if (scene != nullptr && parameters.verification.enabled)
       votes.hypotheses =
-          keepPromising(std::move(votes.hypotheses), static_cast<std::size_t>(parameters.clustering.max_hypotheses),
-                        *scene, model, parameters.verification, executor);
+          keepPromising(votes.hypotheses, static_cast<std::size_t>(parameters.clustering.poses_per_reference), *scene,
+                        model, parameters.verification, executor);
     clock.lap("glance");
     const auto clusters = clusterPoses(std::move(votes.hypotheses), model, parameters.clustering);
     clock.count("clusters", static_cast<double>(clusters.size()));

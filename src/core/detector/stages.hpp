@@ -63,9 +63,9 @@ std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentat
                                      const std::vector<CandidateTarget>& candidates, const TrainedModel& model,
                                      const DetectorParameters& parameters);
 
-/// The hypotheses that a glance at a few of their points contradicts least, so that every reference point may propose
-/// many.
-std::vector<Hypothesis> keepPromising(std::vector<Hypothesis> hypotheses, std::size_t max_kept,
+/// Of each reference point the hypotheses that a glance at a few of their points contradicts least.
+/// \param hypotheses ordered by reference
+std::vector<Hypothesis> keepPromising(const std::vector<Hypothesis>& hypotheses, std::size_t per_reference,
                                       const PreparedScene& scene, const TrainedModel& model,
                                       const VerificationParameters& parameters, const Executor& executor);
 

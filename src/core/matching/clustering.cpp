@@ -13,12 +13,11 @@ void ClusteringParameters::visit(ParameterVisitor& v)
   v.field({"distance", "", "poses nearer than this share of the diameter (at the part's centre) may be one", 0.001, 1},
           distance);
   v.field({"angle", "rad", "poses turned by less than this may be one", 0.01, 3.2}, angle);
-  v.field(
-      {"max_hypotheses", "",
-       "hypotheses that are grouped: those that a glance at a few of their points contradicts least; more find more "
-       "hidden parts and cost time",
-       1, 1000000},
-      max_hypotheses);
+  v.field({"poses_per_reference", "",
+           "poses of each reference point that are grouped: those that a glance at the scene contradicts least; more "
+           "find more hidden parts and cost time",
+           1, 20},
+          poses_per_reference);
   v.field({"max_clusters", "",
            "strongest clusters that are looked at further; more find more hidden parts and cost time", 1, 100000},
           max_clusters);
