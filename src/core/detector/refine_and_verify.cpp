@@ -24,8 +24,8 @@ constexpr double SAME_DISTANCE = 0.07;  // of the diameter
 /// A few steps towards the surface: poses from votes are off by so much that right and wrong ones explain about alike.
 Pose nudge(const Pose& T_camera_object, const PreparedScene& scene, const TrainedModel& model, IcpParameters icp)
 {
-  constexpr std::size_t NUDGE_PIXELS = 200;
-  constexpr int NUDGE_STEPS = 4;
+  constexpr std::size_t NUDGE_PIXELS = 120;
+  constexpr int NUDGE_STEPS = 3;
   if (icp.method != IcpMethod::DistanceField)
     return T_camera_object;
   icp.max_iterations = std::min(icp.max_iterations, NUDGE_STEPS);
