@@ -30,10 +30,11 @@ def read_poses(path):
     with open(path, encoding="utf-8") as file:
         report = json.load(file)
     names, poses = [], []
-    for scene in report["scenes"]:
+    for number, scene in enumerate(report["scenes"]):
         for tested in scene.get("tested", []):
             names = list(tested["terms"])
-            poses.append(Pose(scene["name"], tested))
+            # Sets that are linked into one folder may have scenes of the same name.
+            poses.append(Pose((scene["name"], number), tested))
     if len({pose.sample.outcome for pose in poses}) < 2:
         sys.exit(f"fit_confidence: {path} must list right and wrong poses that were tested, but has {len(poses)} of one"
                  " kind; evaluate more scenes, with verification on and --set max_rejected=1000")
@@ -95,7 +96,8 @@ def weights_text(names, poses, model, dataset):
              "#pragma once", "",
              "// Written by benchmark/fit_confidence.sh --write, fitted to",
              f"// {len(poses)} poses, {right} of them right, of {len({pose.part for pose in poses})} part(s)"
-             f" in {len({pose.scene for pose in poses})} scenes of {dataset}.",
+             f" in {len({pose.scene for pose in poses})} scenes of",
+             f"// {dataset}.",
              "namespace bin_picking::confidence_weights", "{",
              f"constexpr double CONSTANT = {model.constant:.5g};"]
     lines += [f"constexpr double {name.upper()} = {weight:.5g};" for name, weight in zip(names, model.weights)]

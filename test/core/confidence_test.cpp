@@ -17,6 +17,7 @@ PoseQuality good()
   PoseQuality quality;
   quality.inlier_share = 0.96;
   quality.violation_share = 0.002;
+  quality.visible_fraction = 0.8;
   quality.surface_share = 0.95;
   quality.outline_share = 0.8;
   quality.turn_margin = 100;
@@ -55,6 +56,7 @@ TEST(Confidence, isHighForATruePoseAndLowForNothing)
 
 TEST(Confidence, fallsWithWhateverSpeaksAgainstThePose)
 {
+  expectLess("visible_fraction", [](PoseQuality& q) { q.visible_fraction -= 0.08; });
   expectLess("violation_share", [](PoseQuality& q) { q.violation_share += 0.05; });
   expectLess("surface_share", [](PoseQuality& q) { q.surface_share -= 0.1; });
   expectLess("outline_share", [](PoseQuality& q) { q.outline_share -= 0.1; });

@@ -9,6 +9,7 @@ namespace bin_picking
 /// What speaks for and against a refined pose, in numbers that mean the same for every part.
 struct PoseQuality
 {
+  double visible_fraction = 0;  ///< PoseEvidence::visibleFraction
   double inlier_share = 0;     ///< PoseEvidence::inlierShare
   double violation_share = 0;  ///< PoseEvidence::violationShare
   double surface_share = 0;    ///< surfaceShare

@@ -23,12 +23,12 @@ struct VerificationParameters
   double min_outline_share = 0.3;
   double min_score = 0.6;
   double min_visible_fraction = 0.3;
-  double min_inlier_share = 0.6;
+  double min_inlier_share = 0.78;
   double max_violation_share = 0.2;
   double unmeasured_weight = 0.3;
   double min_turn_margin = 10;
   bool accept_undetermined_turns = true;
-  double min_surface_share = 0.75;
+  double min_surface_share = 0.8;
   double max_bin_penetration = 0.006;
   double overlap = 0.35;
   int max_refined = 48;

@@ -167,6 +167,7 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
   detection.T_camera_object = T;
   const SurfaceIndices visible = visiblePoints(model, T);
   const PoseEvidence evidence = evidenceAt(T, thinned(visible, TEST_POINTS), scene, model, verification);
+  quality.visible_fraction = evidence.visibleFraction();
   quality.inlier_share = evidence.inlierShare(verification.unmeasured_weight);
   quality.violation_share = evidence.violationShare();
   if (verification.enabled)

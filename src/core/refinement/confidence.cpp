@@ -19,7 +19,7 @@ constexpr double MOST_VIOLATION = 0.3;
 constexpr double LEAST_MARGIN = 1;
 constexpr double MOST_PENETRATION = 0.02;
 
-/// The inlier share is not among them: beside violation and surface share it says nothing more.
+/// The inlier share is not among them: beside the visible fraction, violation and surface share it says nothing more.
 struct Term
 {
   const char* name;
@@ -31,6 +31,7 @@ const Term TERMS[] = {
     {"violation_share", weights::VIOLATION_SHARE,
      [](const PoseQuality& q) { return -std::sqrt(std::min(q.violation_share, MOST_VIOLATION)); }},
     {"surface_share", weights::SURFACE_SHARE, [](const PoseQuality& q) { return q.surface_share; }},
+    {"visible_fraction", weights::VISIBLE_FRACTION, [](const PoseQuality& q) { return q.visible_fraction; }},
     {"outline_share", weights::OUTLINE_SHARE, [](const PoseQuality& q) { return q.outline_share; }},
     {"turn_margin", weights::TURN_MARGIN,
      [](const PoseQuality& q) { return std::log(std::clamp(q.turn_margin, LEAST_MARGIN, MOST_MARGIN)); }},
