@@ -65,7 +65,19 @@ struct BlockScene
     DepthRenderer renderer(480, 384, test::smallCamera());
     renderer.draw(test::floorMesh(), Pose::Identity(), 0);
     renderer.draw(mesh, truth, 1);
-    measured = renderer.grid();
+    measured = withoutRim(renderer.grid());
+  }
+
+  /// Sensors lose the last pixel before an edge.
+  static DepthGrid withoutRim(const DepthGrid& whole)
+  {
+    const auto isTop = [&](int u, int v) { return whole.z[static_cast<std::size_t>(whole.index(u, v))] < 0.65f; };
+    DepthGrid grid = whole;
+    for (int v = 1; v + 1 < whole.height; ++v)
+      for (int u = 1; u + 1 < whole.width; ++u)
+        if (isTop(u, v) && !(isTop(u - 1, v) && isTop(u + 1, v) && isTop(u, v - 1) && isTop(u, v + 1)))
+          grid.invalidate(grid.index(u, v));
+    return grid;
   }
 
   TrainedModel model;
@@ -184,7 +196,7 @@ TEST(DepthEdges, LieOnTheOutlineAndPointAwayFromTheSurface)
       const Eigen::Vector3d in_part = T_object_camera * p - block.model.center;
       const Eigen::Vector2d to_side = Eigen::Vector2d(0.030, 0.020) - in_part.head<2>().cwiseAbs();
       EXPECT_GE(to_side.minCoeff(), -1e-4);
-      EXPECT_LT(to_side.minCoeff(), 2 * 0.0008) << "two pixels";
+      EXPECT_LT(to_side.minCoeff(), 3 * 0.0008) << "three pixels, one of which is lost";
       const Eigen::Vector3d outward = T_object_camera.linear() * Eigen::Vector3d(edge.outward.x(), edge.outward.y(), 0);
       EXPECT_GT(outward.head<2>().dot(in_part.head<2>().cwiseQuotient(Eigen::Vector2d(0.030, 0.020))), 0);
       ++count;

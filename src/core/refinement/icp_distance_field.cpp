@@ -116,7 +116,7 @@ void addEdges(const DistanceField& field, const OrientedPoints& edges, const Eig
 /// Solves in the directions that the surface holds; where its eigenvalue is tiny (along a cylinder) nothing moves.
 Vector6d solveObservable(const NormalEquations& equations)
 {
-  constexpr double MIN_EIGENVALUE_SHARE = 1e-3;
+  constexpr double MIN_EIGENVALUE_SHARE = 5e-4;
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(equations.A);
   const Vector6d& values = solver.eigenvalues();
   Vector6d x = Vector6d::Zero();
