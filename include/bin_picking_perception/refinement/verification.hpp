@@ -21,7 +21,7 @@ struct VerificationParameters
   double noise_tolerance = 5;
   double max_normal_angle = 0.7;
   double min_outline_share = 0.3;
-  double min_score = 0.6;
+  double min_score = 0.7;
   double min_visible_fraction = 0.3;
   double min_inlier_share = 0.78;
   double max_violation_share = 0.2;
