@@ -102,12 +102,9 @@ Json testedJson(const TestedPose& pose)
 {
   const PoseQuality& q = pose.quality;
   Json json = {{"part", pose.part}, {"score", pose.score}, {"accepted", pose.accepted}, {"right", pose.right}};
-  json["quality"] = {{"visible_fraction", q.visible_fraction},
-                     {"inlier_share", q.inlier_share},
-                     {"violation_share", q.violation_share},
-                     {"surface_share", q.surface_share},
-                     {"outline_share", q.outline_share},
-                     {"turn_margin", q.turn_margin},  // infinity is null
+  json["quality"] = {{"visible_fraction", q.visible_fraction}, {"inlier_share", q.inlier_share},
+                     {"violation_share", q.violation_share},   {"surface_share", q.surface_share},
+                     {"outline_share", q.outline_share},       {"turn_margin", q.turn_margin},  // infinity is null
                      {"bin_penetration", q.bin_penetration}};
   for (const ConfidenceTerm& term : confidenceTerms(q))
     json["terms"][term.name] = term.value;

@@ -57,9 +57,10 @@ struct VotingResult
 /// Every n-th of `candidates`, so that about reference_share of them, but at least min_references, are drawn.
 std::vector<int> chooseReferences(const std::vector<int>& candidates, const VotingParameters& parameters);
 
-/// The first point of every cube of a grid, so that small and hidden parts have their references too. A cube's edge is
-/// `leaf`, the distance of the points, over the root of reference_share: of a plane across the cubes that share is
-/// drawn, of broken surfaces more. Smaller cubes where they are fewer than min_references.
+/// One point of every cube of a grid, the middle one in their order, so that small and hidden parts have their
+/// references too. A cube's edge is `leaf`, the distance of the points, over the root of reference_share: of a plane
+/// across the cubes that share is drawn, of broken surfaces more. Smaller cubes where they are fewer than
+/// min_references.
 std::vector<int> spreadReferences(const std::vector<Eigen::Vector3f>& points, double leaf,
                                   const VotingParameters& parameters);
 

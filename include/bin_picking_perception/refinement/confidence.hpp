@@ -10,10 +10,10 @@ namespace bin_picking
 struct PoseQuality
 {
   double visible_fraction = 0;  ///< PoseEvidence::visibleFraction
-  double inlier_share = 0;     ///< PoseEvidence::inlierShare
-  double violation_share = 0;  ///< PoseEvidence::violationShare
-  double surface_share = 0;    ///< surfaceShare
-  double outline_share = 0;    ///< OutlineEvidence::share
+  double inlier_share = 0;      ///< PoseEvidence::inlierShare
+  double violation_share = 0;   ///< PoseEvidence::violationShare
+  double surface_share = 0;     ///< surfaceShare
+  double outline_share = 0;     ///< OutlineEvidence::share
   double turn_margin = 0;  ///< RivalChoice::margin, or margin_beyond_turn where a turn is left open; infinity: there is
                            ///< no rival
   double bin_penetration = 0;  ///< metres; 0 without a bin

@@ -53,7 +53,7 @@ struct MeasuredPart
 };
 
 /// The measurements in the box of the part at a pose, grown by the band of its distance field.
-/// \param max_pixels about so many pixels at most are looked at, evenly
+/// \param normals, edges of that grid. \param max_pixels about so many pixels at most are looked at, evenly
 MeasuredPart measuredNear(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
                           const std::vector<Eigen::Vector3f>& normals, const DepthEdges& edges, std::size_t max_pixels);
 

@@ -10,6 +10,12 @@
 
 namespace bin_picking
 {
+namespace
+{
+constexpr double MIN_EDGE = 0.5;  // of the leaf: a smaller drop in depth is no end of a part
+constexpr double EDGE_NOISE = 3;  // standard deviations that are no drop
+}  // namespace
+
 PreparedScene reduceScene(const PointView& raw, const Bin* bin, const TrainedModel& model,
                           const DetectorParameters& parameters, const Executor& executor, StageClock& clock)
 {
@@ -40,8 +46,8 @@ void describeScene(PreparedScene& scene, const TrainedModel& model, const Detect
   scene.runs = connectedRuns(scene.grid, EdgeRule(), executor);
   scene.noise = estimateDepthNoise(scene.grid, scene.runs);
   clock.lap("noise");
-  scene.edges =
-      findDepthEdges(scene.grid, scene.surroundings, scene.runs, 0.5 * trained.leaf + 3 * scene.noise, executor);
+  const double min_drop = MIN_EDGE * trained.leaf + EDGE_NOISE * scene.noise;
+  scene.edges = findDepthEdges(scene.grid, scene.surroundings, scene.runs, min_drop, executor);
   clock.lap("edges");
   scene.normals = estimateGridNormals(scene.grid, scene.runs, trained.normal_radius, executor);
   clock.lap("normals");

@@ -6,11 +6,13 @@ namespace bin_picking
 {
 void IcpParameters::visit(ParameterVisitor& v)
 {
-  v.field(
-      {"method", "",
-       "point_to_point with nearest neighbours (the paper), measured points against the distance_field of the part, or none"},
-      method,
-      {{"none", IcpMethod::None}, {"point_to_point", IcpMethod::PointToPoint}, {"distance_field", IcpMethod::DistanceField}});
+  v.field({"method", "",
+           "point_to_point with nearest neighbours (the paper), measured points against the distance_field of the "
+           "part, or none"},
+          method,
+          {{"none", IcpMethod::None},
+           {"point_to_point", IcpMethod::PointToPoint},
+           {"distance_field", IcpMethod::DistanceField}});
   v.field({"max_iterations", "", "ends the refinement if it has not converged before", 1, 1000}, max_iterations);
   v.field({"max_distance", "", "pairs further apart than this many leaves are not used at the start", 0.1, 20},
           max_distance);

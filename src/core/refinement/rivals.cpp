@@ -7,181 +7,15 @@
 #include <vector>
 
 #include "bin_picking_perception/model/slight_turn.hpp"
+#include "contradiction.hpp"
 
 namespace bin_picking
 {
 namespace
 {
-constexpr int MAX_SCENE_POINTS = 800;
-constexpr std::size_t MAX_MODEL_POINTS = 400;
-constexpr float OUTLIER = 9;          // squared: off by three halves of the tolerance is as wrong as anything
 constexpr double OTHER_POSE = 0.1;    // of the diameter: nearer rivals are the same for a gripper
 constexpr int FINE_STEPS = 4;         // to either side
 constexpr double FINE_ANGLE = 0.044;  // rad: together half a step of the near symmetries
-
-/// Measured points around a pose, in the part's frame.
-struct Neighbourhood
-{
-  std::vector<Eigen::Vector3f> points;
-  double area_per_point = 0;  ///< in squares of a leaf's edge
-};
-
-Neighbourhood measuredAround(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid)
-{
-  constexpr double REACH = 0.65;  // of the diameter, round the part's middle: rivals stick out a little
-  const Eigen::Vector3d center = T_camera_object * model.center;
-  if (center.z() <= 0)
-    return {};  // behind the camera
-  const Eigen::Vector2d middle = grid.camera.project(center);
-  const double radius = REACH * model.diameter / grid.pitch(center.z());
-  const int step =
-      std::max(1, static_cast<int>(std::ceil(2 * radius / std::sqrt(static_cast<double>(MAX_SCENE_POINTS)))));
-  const auto clampTo = [](double value, int count) { return static_cast<int>(std::clamp(value, 0.0, count - 1.0)); };
-  const Eigen::Isometry3f T_object_camera = T_camera_object.inverse().cast<float>();
-  Neighbourhood around;
-  around.area_per_point = std::pow(step * grid.pitch(center.z()) / model.parameters.leaf, 2);
-  for (int v = clampTo(middle.y() - radius, grid.height); v <= clampTo(middle.y() + radius, grid.height); v += step)
-    for (int u = clampTo(middle.x() - radius, grid.width); u <= clampTo(middle.x() + radius, grid.width); u += step)
-      if (grid.valid(grid.index(u, v)))
-        around.points.push_back(T_object_camera * grid.point(grid.index(u, v)));
-  return around;
-}
-
-/// Evenly chosen points of the surface; the same ones for all rivals, so that their sampling does not tell them apart.
-struct SurfaceSamples
-{
-  explicit SurfaceSamples(const TrainedModel& model)
-  {
-    const std::size_t step = std::max<std::size_t>(1, model.surface.size() / MAX_MODEL_POINTS);
-    for (std::size_t i = 0; i < model.surface.size(); i += step)
-      indices.push_back(static_cast<int>(i));
-    const double spacing = model.parameters.surface_spacing / model.parameters.leaf;
-    area_per_point = spacing * spacing * static_cast<double>(step);
-  }
-
-  std::vector<int> indices;
-  double area_per_point = 0;  ///< in squares of a leaf's edge
-};
-
-/// The sensor looked through the point: everything measured on its ray and beside it lies behind.
-bool seenThrough(const DepthGrid& grid, const Eigen::Vector3f& p, float limit)
-{
-  constexpr int AROUND[5][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
-  const PinholeCamera& camera = grid.camera;
-  const float inverse_z = 1 / p.z();
-  const float u = static_cast<float>(camera.fx) * p.x() * inverse_z + static_cast<float>(camera.cx) + 0.5f;
-  const float v = static_cast<float>(camera.fy) * p.y() * inverse_z + static_cast<float>(camera.cy) + 0.5f;
-  if (!(u >= 1 && v >= 1 && u < static_cast<float>(grid.width - 1) && v < static_cast<float>(grid.height - 1)))
-    return false;
-  const int middle = grid.index(static_cast<int>(u), static_cast<int>(v));
-  return std::all_of(std::begin(AROUND), std::end(AROUND), [&](const int(&offset)[2]) {
-    // false for NaN: nothing was measured
-    return grid.z[static_cast<std::size_t>(middle + grid.index(offset[0], offset[1]))] >= p.z() + limit;
-  });
-}
-
-/// What speaks against poses T_camera_object * turn: what was measured off the surface, and what of the surface the
-/// sensor looked through. In squares of a leaf's edge, each at most OUTLIER / 2.
-class Contradiction
-{
-public:
-  Contradiction(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
-                const DepthGrid& surroundings, double tolerance)
-      : model_(model),
-        T_camera_object_(T_camera_object),
-        surroundings_(surroundings),
-        tolerance_(tolerance),
-        around_(measuredAround(model, T_camera_object, grid)),
-        samples_(model)
-  {}
-
-  /// Of every turn. From here on, of the measured points only those count that lie near the surface of one of these
-  /// poses at least: they may belong to the part. What is more than MOST_MARGIN above the least is only known to be so.
-  std::vector<double> ofAll(const std::vector<Pose>& turns)
-  {
-    std::vector<double> against = offSurfaceOfAll(turns);
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < turns.size(); ++k)
-    {
-      against[k] += seenThroughShare(turns[k], least + MOST_MARGIN - against[k]);
-      least = std::min(least, against[k]);
-    }
-    return against;
-  }
-
-  double operator()(const Pose& turn) const
-  {
-    double off = 0;
-    const Eigen::Isometry3f T_turned_object = turn.inverse().cast<float>();
-    for (const Eigen::Vector3f& p : around_.points)
-      off += cost(model_.field.at(T_turned_object * p));
-    return 0.5 * around_.area_per_point * off + seenThroughShare(turn, std::numeric_limits<double>::infinity());
-  }
-
-private:
-  double cost(float distance) const
-  {
-    const float residual = distance * static_cast<float>(2 / tolerance_);
-    return static_cast<double>(std::min(residual * residual, OUTLIER));
-  }
-
-  std::vector<double> offSurfaceOfAll(const std::vector<Pose>& turns)
-  {
-    std::vector<Eigen::Isometry3f> motions(turns.size());
-    std::transform(turns.begin(), turns.end(), motions.begin(),
-                   [](const Pose& turn) { return turn.inverse().cast<float>(); });
-    const float near = 0.7f * model_.field.band();
-    std::vector<double> sums(turns.size(), 0);
-    std::vector<double> costs(turns.size());
-    std::vector<Eigen::Vector3f> concerned;
-    for (const Eigen::Vector3f& p : around_.points)
-    {
-      float nearest = near;
-      for (std::size_t k = 0; k < motions.size(); ++k)
-      {
-        const float distance = model_.field.at(motions[k] * p);
-        nearest = std::min(nearest, std::abs(distance));
-        costs[k] = cost(distance);
-      }
-      if (nearest >= near)
-        continue;
-      concerned.push_back(p);
-      for (std::size_t k = 0; k < sums.size(); ++k)
-        sums[k] += costs[k];
-    }
-    around_.points = std::move(concerned);
-    for (double& sum : sums)
-      sum *= 0.5 * around_.area_per_point;
-    return sums;
-  }
-
-  /// \param enough where the search may end
-  double seenThroughShare(const Pose& turn, double enough) const
-  {
-    constexpr float MIN_COSINE = 0.35f;  // flatter, the ray passes the silhouette
-    const Eigen::Isometry3f T = (T_camera_object_ * turn).cast<float>();
-    const auto limit = static_cast<float>(0.5 * model_.parameters.leaf + tolerance_);
-    const double each = 0.5 * samples_.area_per_point * static_cast<double>(OUTLIER);
-    double sum = 0;
-    for (auto k = samples_.indices.begin(); k != samples_.indices.end() && sum <= enough; ++k)
-    {
-      const auto i = static_cast<std::size_t>(*k);
-      const Eigen::Vector3f p = T * model_.surface.points[i];
-      const float towards = -(T.linear() * model_.surface.normals[i]).dot(p);
-      if (p.z() > 0 && towards > 0 && towards * towards > MIN_COSINE * MIN_COSINE * p.squaredNorm() &&
-          seenThrough(surroundings_, p, limit))
-        sum += each;
-    }
-    return sum;
-  }
-
-  const TrainedModel& model_;
-  Pose T_camera_object_;
-  const DepthGrid& surroundings_;
-  double tolerance_;
-  Neighbourhood around_;
-  SurfaceSamples samples_;
-};
 
 /// The best turn about the axis next to one of the steps. \param least contradiction of the step itself
 Pose betweenSteps(const Pose& step, const Symmetry::Axis& axis, const Contradiction& contradiction, double least)
@@ -317,19 +151,5 @@ RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_ob
   if (choice.margin < min_margin)
     leaveTurnOpen(model, rivals, min_margin, choice);
   return choice;
-}
-
-double surfaceShare(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid, double tolerance)
-{
-  constexpr float NEAR = 0.7f;  // of the band
-  int near = 0;
-  int on_surface = 0;
-  for (const Eigen::Vector3f& p : measuredAround(model, T_camera_object, grid).points)
-  {
-    const float distance = std::abs(model.field.at(p));
-    near += distance < NEAR * model.field.band();
-    on_surface += distance < static_cast<float>(tolerance);
-  }
-  return near > 0 ? static_cast<double>(on_surface) / near : 0;
 }
 }  // namespace bin_picking

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <cmath>
+
+#include "bin_picking_perception/model/trained_model.hpp"
+#include "bin_picking_perception/refinement/icp.hpp"
+#include "pixel_window.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+/// The part's box at a pose, grown by the band of its distance field.
+struct PartBox
+{
+  PartBox(const TrainedModel& model, const Pose& T_camera_object)
+      : T_object_camera(T_camera_object.inverse().cast<float>()),
+        center(model.center.cast<float>()),
+        half_size((model.size / 2).cast<float>().array() + model.field.band())
+  {}
+
+  bool holds(const Eigen::Vector3f& p) const
+  {
+    return ((T_object_camera * p - center).cwiseAbs() - half_size).maxCoeff() <= 0;
+  }
+
+  Eigen::Isometry3f T_object_camera;
+  Eigen::Vector3f center;
+  Eigen::Vector3f half_size;
+};
+
+/// Half a pixel outward of the pixel's middle, with the direction across the ray.
+void addEdge(const DepthGrid& grid, int pixel, const Eigen::Vector2f& outward, OrientedPoints& edges)
+{
+  const Eigen::Vector3f p = grid.point(pixel);
+  const Eigen::Vector3f ray = p.normalized();
+  const Eigen::Vector3f in_picture(outward.x(), outward.y(), 0);
+  const Eigen::Vector3f across = (in_picture - ray.dot(in_picture) * ray).normalized();
+  edges.points.push_back(p + 0.5f * static_cast<float>(grid.pitch(static_cast<double>(p.z()))) * across);
+  edges.normals.push_back(across);
+}
+}  // namespace
+
+MeasuredPart measuredNear(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
+                          const std::vector<Eigen::Vector3f>& normals, const DepthEdges& edges, std::size_t max_pixels)
+{
+  const PartBox box(model, T_camera_object);
+  const PixelWindow window(grid, T_camera_object * model.center, static_cast<double>(box.half_size.norm()), max_pixels);
+  MeasuredPart measured;
+  for (int v = window.v_begin; v < window.v_end; v += window.step)
+    for (int u = window.u_begin; u < window.u_end; u += window.step)
+    {
+      const int i = grid.index(u, v);
+      const Eigen::Vector3f& normal = normals[static_cast<std::size_t>(i)];
+      if (std::isnan(normal.x()) || !grid.valid(i) || !box.holds(grid.point(i)))
+        continue;
+      measured.surface.points.push_back(grid.point(i));
+      measured.surface.normals.push_back(normal);
+    }
+  for (int v = window.v_begin; v < window.v_end; v += window.step)
+    for (const DepthEdge& edge : edges.rows[static_cast<std::size_t>(v)])
+      if (edge.column >= window.u_begin && edge.column < window.u_end &&
+          box.holds(grid.point(grid.index(edge.column, v))))
+        addEdge(grid, grid.index(edge.column, v), edge.outward, measured.edges);
+  return measured;
+}
+}  // namespace bin_picking
