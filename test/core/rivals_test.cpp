@@ -93,8 +93,11 @@ TEST(NearSymmetry, TheDepthOfTheKeywayIsItsDeviationAllAround)
 TEST(NearSymmetry, BranchesRibsAndWallsAreNotSlight)
 {
   for (const char* part : {"three_way_tube", "upright_column", "pipe_elbow", "l_bracket", "cast_handle"})
-    for (const NearSymmetry& near : trained(part)->near_symmetries)
+  {
+    const auto model = trained(part);
+    for (const NearSymmetry& near : model->near_symmetries)
       EXPECT_FALSE(near.slight) << part << ", a turn that moves the surface by " << 1000 * near.deviation << " mm";
+  }
   const auto bolt = trained("hex_bolt");
   for (const NearSymmetry& near : bolt->near_symmetries)
     if (std::abs(near.axis.direction.z()) > 0.999)

@@ -51,7 +51,8 @@ bool isSeenThrough(const DepthGrid& grid, const Eigen::Vector3f& p, float limit)
   const int middle = grid.index(static_cast<int>(u), static_cast<int>(v));
   return std::all_of(std::begin(AROUND), std::end(AROUND), [&](const int(&offset)[2]) {
     // false for NaN: nothing was measured
-    return grid.z[static_cast<std::size_t>(middle + grid.index(offset[0], offset[1]))] >= p.z() + limit;
+    const int pixel = middle + grid.index(offset[0], offset[1]);
+    return grid.z[static_cast<std::size_t>(pixel)] >= p.z() + limit;
   });
 }
 }  // namespace

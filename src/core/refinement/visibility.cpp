@@ -66,7 +66,8 @@ private:
   std::size_t index(const Facing& p) const
   {
     const Eigen::Vector2f q = (p.place - low_) * inverse_cell_;
-    return static_cast<std::size_t>(static_cast<int>(q.y()) * width_ + static_cast<int>(q.x()));
+    const int cell = static_cast<int>(q.y()) * width_ + static_cast<int>(q.x());
+    return static_cast<std::size_t>(cell);
   }
 
   float inverse_cell_ = 0;

@@ -22,7 +22,9 @@ namespace
     const float px = from_x[k * step];
     const float py = from_y[k * step];
     const float pz = from_z[k * step];
-    const bool measured = (std::abs(px) <= MAX) & (std::abs(py) <= MAX) & (pz > 0) & (pz <= MAX);
+    const float aside = std::abs(px);
+    const float down = std::abs(py);
+    const bool measured = (aside <= MAX) & (down <= MAX) & (pz > 0) & (pz <= MAX);
     const float nearest = measured ? pz : NOT_MEASURED;
     const float furthest = measured ? pz : 0.0f;
     x[k] += measured ? px : 0.0f;
@@ -105,11 +107,14 @@ BIN_PICKING_SIMD void averageBlocks(const Blocks& blocks, const std::vector<floa
   for (std::size_t b = 0; b < size; ++b)
   {
     const float count = blocks.count[b];
-    const float scale = count >= required[b] ? 1.0f : std::numeric_limits<float>::quiet_NaN();
+    const bool enough = count >= required[b];
+    const float scale = enough ? 1.0f : std::numeric_limits<float>::quiet_NaN();
     x[b] = scale * blocks.x[b] / count;
     y[b] = scale * blocks.y[b] / count;
     z[b] = scale * blocks.z[b] / count;
-    mixed[b] = (count >= required[b]) & (blocks.far[b] - blocks.near[b] > limit.at(blocks.near[b]));
+    const float spread = blocks.far[b] - blocks.near[b];
+    const float of_one_surface = limit.at(blocks.near[b]);
+    mixed[b] = enough & (spread > of_one_surface);
   }
 }
 }  // namespace bin_picking

@@ -141,8 +141,8 @@ double contourPixels(const Segmentation& segmentation, int label, const Box& box
   std::vector<std::uint8_t> mask(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
   for (int v = box.v_min; v <= box.v_max; ++v)
   {
-    const std::int32_t* from = &segmentation.labels[static_cast<std::size_t>(v * segmentation.width + box.u_min)];
-    std::uint8_t* to = &mask[static_cast<std::size_t>((v - box.v_min + 1) * width + 1)];
+    const std::int32_t* from = segmentation.labels.data() + (v * segmentation.width + box.u_min);
+    std::uint8_t* to = mask.data() + ((v - box.v_min + 1) * width + 1);
     std::transform(from, from + (box.u_max - box.u_min + 1), to,
                    [&](std::int32_t other) { return static_cast<std::uint8_t>(other == label ? 1 : 0); });
   }
