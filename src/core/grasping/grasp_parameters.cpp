@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <cmath>
 
-#include "bin_picking_perception/grasping/grasp_selection.hpp"
+#include "bin_picking_perception/grasping/grasp_parameters.hpp"
 
 namespace bin_picking
 {
@@ -16,10 +16,6 @@ void GraspParameters::visit(ParameterVisitor& v)
   v.field(
       {"min_matching_rate", "", "smallest matching rate of a part that is grasped; smaller risks empty grips", 0, 1},
       min_matching_rate);
-  v.field({"bin_clearance", "m",
-           "smallest distance of the gripper to walls and floor on the whole way; larger gives up parts near the walls",
-           0, 0.1},
-          bin_clearance);
   v.field({"continuous_symmetry_steps", "", "copies of a grasp that are offered around an axis of revolution", 1, 360},
           continuous_symmetry_steps);
   v.field({"max_grasps", "", "most grasps that are returned", 1, 10000}, max_grasps);
@@ -28,29 +24,12 @@ void GraspParameters::visit(ParameterVisitor& v)
   v.field({"weight_height", "", "share of the height in the pile: larger empties the bin from the top", 0, 100},
           weight_height);
   v.field({"weight_priority", "", "share of the priority written in the part's definition", 0, 100}, weight_priority);
+  v.field({"weight_uncovered", "", "share of how much of the part is seen: larger leaves parts that lie under others",
+           0, 100},
+          weight_uncovered);
   v.field({"weight_tilt", "", "share of an upright approach", 0, 100}, weight_tilt);
-  v.field({"weight_clearance", "", "share of the distance to the bin", 0, 100}, weight_clearance);
-}
-
-const char* toString(GraspRejection rejection)
-{
-  switch (rejection)
-  {
-    case GraspRejection::None:
-      return "none";
-    case GraspRejection::MatchingRateTooLow:
-      return "matching_rate_too_low";
-    case GraspRejection::UndeterminedTurn:
-      return "undetermined_turn";
-    case GraspRejection::TiltTooLarge:
-      return "tilt_too_large";
-    case GraspRejection::OpeningTooSmall:
-      return "opening_too_small";
-    case GraspRejection::BinWallCollision:
-      return "bin_wall_collision";
-    case GraspRejection::BinFloorCollision:
-      return "bin_floor_collision";
-  }
-  return "unknown";
+  v.field({"weight_clearance", "", "share of the distance to bin and neighbours", 0, 100}, weight_clearance);
+  v.group("obstacles", obstacles);
+  v.group("reach", reach);
 }
 }  // namespace bin_picking

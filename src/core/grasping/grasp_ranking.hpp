@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "bin_picking_perception/grasping/grasp_selection.hpp"
+#include "bin_picking_perception/grasping/grasp.hpp"
+#include "bin_picking_perception/grasping/grasp_parameters.hpp"
 
 namespace bin_picking
 {
@@ -12,9 +13,10 @@ namespace bin_picking
 struct GraspCandidate
 {
   Grasp grasp;
-  double score = 0;     ///< of the detection, [0, 1]
-  double priority = 1;  ///< among the grasps of the part, [0, 1]
-  double height = 0;    ///< of the grasp point along "up", metres, from any fixed level
+  double score = 0;      ///< of the detection, [0, 1]
+  double uncovered = 1;  ///< share of the part that nothing lies on, [0, 1]
+  double priority = 1;   ///< among the grasps of the part, [0, 1]
+  double height = 0;     ///< of the grasp point along "up", metres, from any fixed level
 };
 
 /// Fills in the quality and sorts, best first. Equal quality (to 1e-6) keeps the order of the input.

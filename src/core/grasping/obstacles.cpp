@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "bin_collision.hpp"
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_sides.hpp"
 #include "body_sweep.hpp"
 #include "gripper_sweeps.hpp"
 #include "held_part.hpp"
@@ -55,7 +55,7 @@ struct Obstacles::Impl
   };
 
   ObstacleParameters parameters;
-  std::optional<BinObstacles> bin;
+  std::vector<BinSide> sides;  ///< none without a bin
   std::optional<SeenSpace> seen;
   std::map<const TrainedModel*, std::unique_ptr<SurfaceBlocks>> surfaces;
   std::vector<Part> parts;
@@ -84,11 +84,9 @@ struct Obstacles::Impl
 
   void meetBin(const BodySweep& body, Encounter& worst) const
   {
-    if (!bin)
-      return;
-    for (std::size_t i = 0; i < bin->sides().size(); ++i)
+    for (std::size_t i = 0; i < sides.size(); ++i)
     {
-      const BinObstacles::Side& side = bin->sides()[i];
+      const BinSide& side = sides[i];
       if (farApart(body.shape, side.box, BIN_LOOK_AHEAD))
         continue;
       keepWorse(worst, {static_cast<float>(bin_picking::clearance(body.shape, side.box)),
@@ -137,10 +135,9 @@ struct Obstacles::Impl
     const HeldPart way(held.placed.model->field, *held.surface, held.placed.T_camera_object, motion_camera,
                        static_cast<float>(parameters.max_drag));
     Encounter worst;
-    if (bin)
-      for (std::size_t i = 0; i < bin->sides().size(); ++i)
-        way.meetSide(bin->sides()[i].box, bin->sides()[i].floor ? ObstacleKind::BinFloor : ObstacleKind::BinWall,
-                     static_cast<int>(i), worst);
+    for (std::size_t i = 0; i < sides.size(); ++i)
+      way.meetSide(sides[i].box, sides[i].floor ? ObstacleKind::BinFloor : ObstacleKind::BinWall, static_cast<int>(i),
+                   worst);
     for (std::size_t i = 0; i < parts.size() && worst.free(); ++i)
       if (i != target && parts[i].box_camera.intersects(way.box()))
         way.meet(*parts[i].surface, parts[i].placed.T_camera_object, static_cast<int>(i), worst);
@@ -160,7 +157,7 @@ struct Obstacles::Impl
         return "";
       case ObstacleKind::BinFloor:
       case ObstacleKind::BinWall:
-        return bin->sides()[static_cast<std::size_t>(met.index)].name;
+        return sides[static_cast<std::size_t>(met.index)].name;
       case ObstacleKind::Surface:
         return "measured surface";
       case ObstacleKind::Unknown:
@@ -217,7 +214,7 @@ Obstacles::Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<Plac
   auto impl = std::make_unique<Impl>();
   impl->parameters = parameters;
   if (bin)
-    impl->bin.emplace(*bin);
+    impl->sides = binSides(*bin);
   for (const PlacedPart& part : parts)
   {
     if (!part.model)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
-#include "bin_picking_perception/grasping/grasp_selection.hpp"
+#include "bin_picking_perception/grasping/grasp_planner.hpp"
 
 #include <gtest/gtest.h>
 
@@ -82,11 +82,46 @@ Detection detectionAt(const Vector3d& position_bin, const Eigen::Quaterniond& ro
   return detection;
 }
 
+/// A block of 20 x 28 x 20 mm round the origin, as far as grasping looks at it.
+std::shared_ptr<const TrainedModel> blockModel()
+{
+  TrainedModel model;
+  model.name = "part";
+  for (double u = -1; u <= 1.001; u += 0.1)
+    for (double v = -1; v <= 1.001; v += 0.1)
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-1.0, 1.0})
+        {
+          Vector3d p;
+          p[axis] = side;
+          p[(axis + 1) % 3] = u;
+          p[(axis + 2) % 3] = v;
+          model.surface.points.push_back(p.cwiseProduct(Vector3d(0.010, 0.014, 0.010)).cast<float>());
+          model.surface.normals.push_back((side * Vector3d::Unit(axis)).cast<float>());
+        }
+  model.points = model.surface;
+  model.size = {0.020, 0.028, 0.020};
+  model.diameter = model.size.norm();
+  model.field = DistanceField(model.surface, 0.002, 0.008);
+  return std::make_shared<const TrainedModel>(std::move(model));
+}
+
+/// Without robot and without cloud.
+GraspSelection planWith(const std::vector<Detection>& detections, const std::vector<PartDefinition>& parts,
+                        const Gripper& gripper, const Bin* bin, const GraspParameters& parameters,
+                        const GraspPlanner::Request& request = {})
+{
+  DetectionResult result;
+  result.detections = detections;
+  const std::vector<std::shared_ptr<const TrainedModel>> models = {blockModel()};
+  return GraspPlanner({parts, gripper, std::nullopt, parameters, 1}).plan({result, models, bin, std::nullopt}, request);
+}
+
 GraspSelection selectInBin(const std::vector<Detection>& detections, const PartDefinition& part,
                            const GraspParameters& parameters = {})
 {
   const Bin bin = binBelowCamera();
-  return selectGrasps(detections, {part}, twoFingerGripper(), &bin, parameters);
+  return planWith(detections, {part}, twoFingerGripper(), &bin, parameters);
 }
 
 Vector3d inBin(const Pose& T_camera_tip)
@@ -94,32 +129,35 @@ Vector3d inBin(const Pose& T_camera_tip)
   return binBelowCamera().T_camera_bin.inverse() * T_camera_tip.translation();
 }
 
-TEST(GraspSelection, APartInTheMiddleIsTakenStraightDown)
+TEST(GraspPlanner, APartInTheMiddleIsTakenStraightDown)
 {
   GraspDefinition definition = graspFromAbove("top");
   definition.approach = 0.08;
   definition.retreat = 0.12;
-  const GraspSelection selection = selectInBin({detectionAt({0.02, -0.01, 0.05})}, partWith({definition}));
+  const GraspSelection selection = selectInBin({detectionAt({0.02, -0.01, 0.025})}, partWith({definition}));
   ASSERT_EQ(selection.grasps.size(), 1u);
   EXPECT_TRUE(selection.rejected.empty());
   const Grasp& grasp = selection.grasps[0];
   EXPECT_EQ(grasp.part, "part");
   EXPECT_EQ(grasp.grasp_id, "top");
-  EXPECT_TRUE(inBin(grasp.T_camera_grasp).isApprox(Vector3d(0.02, -0.01, 0.05), 1e-12));
-  EXPECT_TRUE(inBin(grasp.T_camera_pre_grasp).isApprox(Vector3d(0.02, -0.01, 0.13), 1e-12));
-  EXPECT_TRUE(inBin(grasp.T_camera_retreat).isApprox(Vector3d(0.02, -0.01, 0.17), 1e-12));
-  EXPECT_TRUE(grasp.T_camera_pre_grasp.linear().isApprox(grasp.T_camera_grasp.linear()));
-  EXPECT_TRUE(grasp.T_camera_retreat.linear().isApprox(grasp.T_camera_grasp.linear()));
+  EXPECT_TRUE(inBin(grasp.tip.grasp).isApprox(Vector3d(0.02, -0.01, 0.025), 1e-12));
+  EXPECT_TRUE(inBin(grasp.tip.pre_grasp).isApprox(Vector3d(0.02, -0.01, 0.105), 1e-12));
+  EXPECT_TRUE(inBin(grasp.tip.retreat).isApprox(Vector3d(0.02, -0.01, 0.145), 1e-12));
+  EXPECT_TRUE(grasp.tip.pre_grasp.linear().isApprox(grasp.tip.grasp.linear()));
+  EXPECT_TRUE(grasp.tip.retreat.linear().isApprox(grasp.tip.grasp.linear()));
   EXPECT_NEAR(grasp.tilt, 0, 1e-7);
-  // The fingers end 10 mm below the tips: 40 mm above the floor, which is nearer than any wall.
-  EXPECT_NEAR(grasp.bin_clearance, 0.04, 1e-9);
+  // The fingers end 10 mm below the tips: 15 mm above the floor, which is nearer than any wall.
+  EXPECT_TRUE(grasp.collision_checked);
+  EXPECT_NEAR(grasp.clearance.distance, 0.015, 1e-9);
+  EXPECT_EQ(grasp.clearance.kind, ObstacleKind::BinFloor);
+  EXPECT_FALSE(grasp.reach_checked);
   EXPECT_GT(grasp.quality, 0);
   EXPECT_LE(grasp.quality, 1);
   EXPECT_EQ(grasp.rejection, GraspRejection::None);
   EXPECT_TRUE(grasp.reason.empty());
 }
 
-TEST(GraspSelection, TheObjectInTheHandIsConsistentWithTheDetection)
+TEST(GraspPlanner, TheObjectInTheHandIsConsistentWithTheDetection)
 {
   PartDefinition part = partWith({graspFromAbove("top")});
   part.grasps[0].T_object_tip = Translation3d(0.01, 0.02, 0.005) * part.grasps[0].T_object_tip;
@@ -128,10 +166,10 @@ TEST(GraspSelection, TheObjectInTheHandIsConsistentWithTheDetection)
   const GraspSelection selection = selectInBin({detection}, part);
   ASSERT_EQ(selection.grasps.size(), 2u);
   for (const Grasp& grasp : selection.grasps)
-    EXPECT_TRUE((grasp.T_camera_grasp * grasp.T_tip_object).isApprox(detection.T_camera_object, 1e-12));
+    EXPECT_TRUE((grasp.tip.grasp * grasp.T_tip_object).isApprox(detection.T_camera_object, 1e-12));
 }
 
-TEST(GraspSelection, SymmetricCopiesAreDistinctPosesThatHoldTheSameGeometry)
+TEST(GraspPlanner, SymmetricCopiesAreDistinctPosesThatHoldTheSameGeometry)
 {
   // A flat part that equals itself after half a turn about z. It is taken off-centre, by a corner feature.
   PartDefinition part = partWith({graspFromAbove("corner")});
@@ -143,9 +181,8 @@ TEST(GraspSelection, SymmetricCopiesAreDistinctPosesThatHoldTheSameGeometry)
   const GraspSelection selection = selectInBin({detection}, part);
   ASSERT_EQ(selection.grasps.size(), 2u);
   EXPECT_NE(selection.grasps[0].symmetry_variant, selection.grasps[1].symmetry_variant);
-  EXPECT_NEAR(
-      (selection.grasps[0].T_camera_grasp.translation() - selection.grasps[1].T_camera_grasp.translation()).norm(),
-      2 * std::hypot(0.03, 0.01), 1e-9);
+  EXPECT_NEAR((selection.grasps[0].tip.grasp.translation() - selection.grasps[1].tip.grasp.translation()).norm(),
+              2 * std::hypot(0.03, 0.01), 1e-9);
 
   // Seen from the fingers, the measured surface is the same for every copy.
   for (const Vector3d& p : surface)
@@ -155,14 +192,13 @@ TEST(GraspSelection, SymmetricCopiesAreDistinctPosesThatHoldTheSameGeometry)
     {
       double nearest = std::numeric_limits<double>::infinity();
       for (const Vector3d& q : surface)
-        nearest =
-            std::min(nearest, (grasp.T_camera_grasp.inverse() * detection.T_camera_object * q - as_written).norm());
+        nearest = std::min(nearest, (grasp.tip.grasp.inverse() * detection.T_camera_object * q - as_written).norm());
       EXPECT_NEAR(nearest, 0, 1e-9);
     }
   }
 }
 
-TEST(GraspSelection, VariantZeroIsTheGraspAsWritten)
+TEST(GraspPlanner, VariantZeroIsTheGraspAsWritten)
 {
   PartDefinition part = partWith({graspFromAbove("top")});
   part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, Vector3d::UnitZ()));
@@ -171,11 +207,10 @@ TEST(GraspSelection, VariantZeroIsTheGraspAsWritten)
   const GraspSelection selection = selectInBin({detection}, part);
   ASSERT_EQ(selection.grasps.size(), 1u);
   EXPECT_EQ(selection.grasps[0].symmetry_variant, 0);
-  EXPECT_TRUE(
-      selection.grasps[0].T_camera_grasp.isApprox(detection.T_camera_object * part.grasps[0].T_object_tip, 1e-12));
+  EXPECT_TRUE(selection.grasps[0].tip.grasp.isApprox(detection.T_camera_object * part.grasps[0].T_object_tip, 1e-12));
 }
 
-TEST(GraspSelection, AnAxisOfRevolutionOffersItsSteps)
+TEST(GraspPlanner, AnAxisOfRevolutionOffersItsSteps)
 {
   PartDefinition part = partWith({graspFromAbove("top")});
   part.symmetry.continuous = Symmetry::Axis{Vector3d::UnitZ(), Vector3d::Zero()};
@@ -184,7 +219,7 @@ TEST(GraspSelection, AnAxisOfRevolutionOffersItsSteps)
   EXPECT_EQ(selectInBin({detectionAt({0, 0, 0.06})}, part, parameters).grasps.size(), 8u);
 }
 
-TEST(GraspSelection, TiltIsMeasuredAgainstStraightDownAndLimited)
+TEST(GraspPlanner, TiltIsMeasuredAgainstStraightDownAndLimited)
 {
   GraspParameters parameters;
   parameters.max_tilt = 30 * DEGREE;
@@ -202,19 +237,19 @@ TEST(GraspSelection, TiltIsMeasuredAgainstStraightDownAndLimited)
   EXPECT_NE(selection.rejected[0].reason.find("30.0 deg"), std::string::npos) << selection.rejected[0].reason;
 }
 
-TEST(GraspSelection, ATiltedRetreatStillGoesStraightUp)
+TEST(GraspPlanner, ATiltedRetreatStillGoesStraightUp)
 {
   const Detection detection = detectionAt({0, 0, 0.1}, Eigen::Quaterniond(AngleAxisd(0.5, Vector3d::UnitX())));
   const GraspSelection selection = selectInBin({detection}, partWith({graspFromAbove("top")}));
   ASSERT_EQ(selection.grasps.size(), 1u);
   const Grasp& grasp = selection.grasps[0];
-  EXPECT_TRUE((inBin(grasp.T_camera_retreat) - inBin(grasp.T_camera_grasp)).isApprox(Vector3d(0, 0, 0.1), 1e-9));
-  const Vector3d approach_bin = inBin(grasp.T_camera_grasp) - inBin(grasp.T_camera_pre_grasp);
+  EXPECT_TRUE((inBin(grasp.tip.retreat) - inBin(grasp.tip.grasp)).isApprox(Vector3d(0, 0, 0.1), 1e-9));
+  const Vector3d approach_bin = inBin(grasp.tip.grasp) - inBin(grasp.tip.pre_grasp);
   EXPECT_TRUE(approach_bin.isApprox(0.08 * Vector3d(0, std::sin(0.5), -std::cos(0.5)), 1e-9))
       << approach_bin.transpose();
 }
 
-TEST(GraspSelection, FingersMustNotTouchAWall)
+TEST(GraspPlanner, FingersMustNotTouchAWall)
 {
   // The outer face of a finger is opening / 2 + 6 mm = 31 mm from the tips, along y; the wall is at 150 mm. The palm is
   // wider, but 100 mm above the tips and so 20 mm above the rim.
@@ -222,7 +257,7 @@ TEST(GraspSelection, FingersMustNotTouchAWall)
   const double touching = 0.15 - 0.031;
   const GraspSelection free = selectInBin({detectionAt({0, touching - 0.004, 0.07})}, part);
   ASSERT_EQ(free.grasps.size(), 1u);
-  EXPECT_NEAR(free.grasps[0].bin_clearance, 0.004, 1e-9);
+  EXPECT_NEAR(free.grasps[0].clearance.distance, 0.004, 1e-9);
 
   const GraspSelection near_wall = selectInBin({detectionAt({0, touching - 0.002, 0.07})}, part);
   ASSERT_EQ(near_wall.rejected.size(), 1u);
@@ -233,10 +268,10 @@ TEST(GraspSelection, FingersMustNotTouchAWall)
   const GraspSelection in_wall = selectInBin({detectionAt({0, touching + 0.005, 0.07})}, part);
   ASSERT_EQ(in_wall.rejected.size(), 1u);
   EXPECT_EQ(in_wall.rejected[0].rejection, GraspRejection::BinWallCollision);
-  EXPECT_LT(in_wall.rejected[0].bin_clearance, 0);
+  EXPECT_LT(in_wall.rejected[0].clearance.distance, 0);
 }
 
-TEST(GraspSelection, EveryWallAndItsCornersAreThere)
+TEST(GraspPlanner, EveryWallAndItsCornersAreThere)
 {
   PartDefinition across = partWith({graspFromAbove("along_x"), graspFromAbove("along_y")});
   across.grasps[0].T_object_tip = across.grasps[0].T_object_tip * AngleAxisd(M_PI / 2, Vector3d::UnitZ());
@@ -259,7 +294,7 @@ TEST(GraspSelection, EveryWallAndItsCornersAreThere)
       EXPECT_EQ(selectInBin({detectionAt({x, y, 0.07})}, across).rejected.size(), 2u);
 }
 
-TEST(GraspSelection, TurningTheFingersAlongTheWallFreesAGrasp)
+TEST(GraspPlanner, TurningTheFingersAlongTheWallFreesAGrasp)
 {
   // The same part at the same place: across the wall it is blocked, along the wall the fingers reach 5 mm aside.
   PartDefinition part = partWith({graspFromAbove("across"), graspFromAbove("along")});
@@ -271,7 +306,7 @@ TEST(GraspSelection, TurningTheFingersAlongTheWallFreesAGrasp)
   EXPECT_EQ(selection.rejected[0].grasp_id, "across");
 }
 
-TEST(GraspSelection, AWideOpeningCollidesWhereANarrowOneDoesNot)
+TEST(GraspPlanner, AWideOpeningCollidesWhereANarrowOneDoesNot)
 {
   PartDefinition part = partWith({graspFromAbove("narrow"), graspFromAbove("wide")});
   part.grasps[1].opening = 0.09;
@@ -280,7 +315,7 @@ TEST(GraspSelection, AWideOpeningCollidesWhereANarrowOneDoesNot)
   EXPECT_EQ(selection.grasps[0].grasp_id, "narrow");
 }
 
-TEST(GraspSelection, FingersMustNotReachTheFloor)
+TEST(GraspPlanner, FingersMustNotReachTheFloor)
 {
   const PartDefinition part = partWith({graspFromAbove("top")});
   EXPECT_EQ(selectInBin({detectionAt({0, 0, 0.0135})}, part).grasps.size(), 1u);
@@ -290,7 +325,7 @@ TEST(GraspSelection, FingersMustNotReachTheFloor)
   EXPECT_NE(low.rejected[0].reason.find("2.5 mm"), std::string::npos) << low.rejected[0].reason;
 }
 
-TEST(GraspSelection, FingersOnALinkageAreWhereTheyAreWhenOpenOnTheWayIn)
+TEST(GraspPlanner, FingersOnALinkageAreWhereTheyAreWhenOpenOnTheWayIn)
 {
   // Opened to 50 mm the fingers reach 3 mm farther than when they hold at 30 mm: the flange is where the tip is right
   // for holding, so that they would come 3 mm nearer to the floor than the grasp itself.
@@ -307,37 +342,37 @@ TEST(GraspSelection, FingersOnALinkageAreWhereTheyAreWhenOpenOnTheWayIn)
     }
   const Bin bin = binBelowCamera();
   const GraspSelection selection =
-      selectGrasps({detectionAt({0, 0, 0.05})}, {partWith({graspFromAbove("top")})}, gripper, &bin, {});
+      planWith({detectionAt({0, 0, 0.03})}, {partWith({graspFromAbove("top")})}, gripper, &bin, {});
   ASSERT_EQ(selection.grasps.size(), 1u);
-  EXPECT_NEAR(selection.grasps[0].bin_clearance, 0.037, 1e-9);
+  EXPECT_NEAR(selection.grasps[0].clearance.distance, 0.017, 1e-9);
 }
 
-TEST(GraspSelection, TheWayInIsCheckedAndNotOnlyItsEnds)
+TEST(GraspPlanner, TheWayInIsCheckedAndNotOnlyItsEnds)
 {
   // Tilted by 60 degrees and from far away the gripper would come in through the wall: the pre-grasp is free outside of
   // the bin and the grasp is free inside of it.
   Bin bin = binBelowCamera();
   bin.inner_size.z() = 0.3;
   Gripper gripper = twoFingerGripper();
-  gripper.bodies = {boxBody("needle", {0, 0, -0.01}, {0.002, 0.002, 0.02}, 0)};
+  gripper.bodies = {boxBody("needle", {0, 0, -0.025}, {0.002, 0.002, 0.02}, 0)};
   PartDefinition part = partWith({graspFromAbove("side")});
   part.grasps[0].approach = 0.3;
   GraspParameters parameters;
   parameters.max_tilt = 80 * DEGREE;
   const Detection detection =
       detectionAt({0, 0.1, 0.05}, Eigen::Quaterniond(AngleAxisd(-60 * DEGREE, Vector3d::UnitX())));
-  const GraspSelection selection = selectGrasps({detection}, {part}, gripper, &bin, parameters);
+  const GraspSelection selection = planWith({detection}, {part}, gripper, &bin, parameters);
   ASSERT_EQ(selection.rejected.size(), 1u);
-  const Vector3d start = bin.T_camera_bin.inverse() * selection.rejected[0].T_camera_pre_grasp.translation();
+  const Vector3d start = bin.T_camera_bin.inverse() * selection.rejected[0].tip.pre_grasp.translation();
   EXPECT_GT(start.y(), 0.15 + bin.wall_thickness + 0.02);  // beyond the wall
   EXPECT_EQ(selection.rejected[0].rejection, GraspRejection::BinWallCollision);
 
   // Over a low wall the same way is free.
   bin.inner_size.z() = 0.06;
-  EXPECT_EQ(selectGrasps({detection}, {part}, gripper, &bin, parameters).grasps.size(), 1u);
+  EXPECT_EQ(planWith({detection}, {part}, gripper, &bin, parameters).grasps.size(), 1u);
 }
 
-TEST(GraspSelection, AnOpenTurnIsRefusedUnlessTheCallerAcceptsIt)
+TEST(GraspPlanner, AnOpenTurnIsRefusedUnlessTheCallerAcceptsIt)
 {
   Detection open = detectionAt({-0.05, 0, 0.05});
   open.undetermined_turn = UndeterminedTurn{{Vector3d::UnitZ(), Vector3d::Zero()}, {}, 0.002};
@@ -353,14 +388,16 @@ TEST(GraspSelection, AnOpenTurnIsRefusedUnlessTheCallerAcceptsIt)
     EXPECT_TRUE(grasp.detection_index == 1 && !grasp.undetermined_turn);
 
   const Bin bin = binBelowCamera();
-  const GraspSelection all = selectGrasps(detections, {part}, twoFingerGripper(), &bin, {}, true);
+  GraspPlanner::Request accepting;
+  accepting.accept_undetermined_turn = true;
+  const GraspSelection all = planWith(detections, {part}, twoFingerGripper(), &bin, {}, accepting);
   EXPECT_TRUE(all.rejected.empty());
   ASSERT_EQ(all.grasps.size(), 4u);
   for (const Grasp& grasp : all.grasps)
     EXPECT_EQ(grasp.undetermined_turn, grasp.detection_index == 0);
 }
 
-TEST(GraspSelection, AnOpeningBeyondTheGripperIsRefused)
+TEST(GraspPlanner, AnOpeningBeyondTheGripperIsRefused)
 {
   PartDefinition part = partWith({graspFromAbove("fits"), graspFromAbove("too_wide")});
   part.grasps[0].opening = 0.095;
@@ -373,9 +410,11 @@ TEST(GraspSelection, AnOpeningBeyondTheGripperIsRefused)
   EXPECT_NE(selection.rejected[0].reason.find("96.0 mm"), std::string::npos) << selection.rejected[0].reason;
 }
 
-TEST(GraspSelection, ALowOrUnknownMatchingRateIsRefused)
+TEST(GraspPlanner, ALowOrUnknownMatchingRateIsRefused)
 {
-  std::vector<Detection> detections(3, detectionAt({0, 0, 0.06}));
+  std::vector<Detection> detections;
+  for (const double x : {-0.08, 0.0, 0.08})
+    detections.push_back(detectionAt({x, 0, 0.06}));
   detections[0].matching_rate = 0.85;
   detections[1].matching_rate = 0.849;
   detections[2].matching_rate = std::numeric_limits<double>::quiet_NaN();
@@ -388,24 +427,23 @@ TEST(GraspSelection, ALowOrUnknownMatchingRateIsRefused)
   EXPECT_NE(selection.rejected[0].reason.find("84.9 %"), std::string::npos) << selection.rejected[0].reason;
 }
 
-TEST(GraspSelection, WithoutABinTiltAndRetreatFollowTheView)
+TEST(GraspPlanner, WithoutABinTiltAndRetreatFollowTheView)
 {
   GraspParameters parameters;
   parameters.max_tilt = 20 * DEGREE;
   const Detection straight = detectionAt({0.3, 0, 0.05});  // where a wall would be
   const Detection tilted = detectionAt({0, 0, 0.05}, Eigen::Quaterniond(AngleAxisd(25 * DEGREE, Vector3d::UnitY())));
   const GraspSelection selection =
-      selectGrasps({straight, tilted}, {partWith({graspFromAbove("top")})}, twoFingerGripper(), nullptr, parameters);
+      planWith({straight, tilted}, {partWith({graspFromAbove("top")})}, twoFingerGripper(), nullptr, parameters);
   ASSERT_EQ(selection.grasps.size(), 1u);
-  EXPECT_TRUE(std::isnan(selection.grasps[0].bin_clearance));
-  EXPECT_NEAR(
-      selection.grasps[0].T_camera_grasp.translation().z() - selection.grasps[0].T_camera_retreat.translation().z(),
-      0.1, 1e-9);
+  EXPECT_TRUE(std::isinf(selection.grasps[0].clearance.distance));
+  EXPECT_NEAR(selection.grasps[0].tip.grasp.translation().z() - selection.grasps[0].tip.retreat.translation().z(), 0.1,
+              1e-9);
   ASSERT_EQ(selection.rejected.size(), 1u);
   EXPECT_EQ(selection.rejected[0].rejection, GraspRejection::TiltTooLarge);
 }
 
-TEST(GraspSelection, BetterGraspsComeFirst)
+TEST(GraspPlanner, BetterGraspsComeFirst)
 {
   const auto first = [](std::vector<Detection> detections, const PartDefinition& part) {
     const GraspSelection selection = selectInBin(detections, part);
@@ -416,20 +454,20 @@ TEST(GraspSelection, BetterGraspsComeFirst)
   const PartDefinition one = partWith({graspFromAbove("top")});
   Detection better = detectionAt({0.05, 0, 0.06});
   better.score = 0.95;
-  EXPECT_EQ(first({detectionAt({0, 0, 0.06}), better}, one).detection_index, 1u);                        // score
-  EXPECT_EQ(first({detectionAt({0, 0, 0.06}), detectionAt({0, 0.05, 0.10})}, one).detection_index, 1u);  // height
-  EXPECT_EQ(first({detectionAt({0, 0, 0.1}, Eigen::Quaterniond(AngleAxisd(0.4, Vector3d::UnitX()))),
-                   detectionAt({0, 0, 0.1})},
+  EXPECT_EQ(first({detectionAt({-0.02, 0, 0.06}), better}, one).detection_index, 1u);                    // score
+  EXPECT_EQ(first({detectionAt({0, 0, 0.06}), detectionAt({0, 0.08, 0.10})}, one).detection_index, 1u);  // height
+  EXPECT_EQ(first({detectionAt({-0.05, 0, 0.1}, Eigen::Quaterniond(AngleAxisd(0.4, Vector3d::UnitX()))),
+                   detectionAt({0.05, 0, 0.1})},
                   one)
                 .detection_index,
-            1u);                                                                                       // tilt
-  EXPECT_EQ(first({detectionAt({0, 0.11, 0.1}), detectionAt({0, 0, 0.1})}, one).detection_index, 1u);  // clearance
+            1u);                                                                                        // tilt
+  EXPECT_EQ(first({detectionAt({0, 0.115, 0.1}), detectionAt({0, 0, 0.1})}, one).detection_index, 1u);  // clearance
   PartDefinition two = partWith({graspFromAbove("spare"), graspFromAbove("preferred")});
   two.grasps[1].priority = 5;
   EXPECT_EQ(first({detectionAt({0, 0, 0.06})}, two).grasp_id, "preferred");  // priority
 }
 
-TEST(GraspSelection, EqualGraspsKeepTheStatedOrder)
+TEST(GraspPlanner, EqualGraspsKeepTheStatedOrder)
 {
   // Turns about the approach leave everything that counts as it is. The axis lies askew in the part frame.
   const Eigen::Quaterniond askew(AngleAxisd(0.6, Vector3d(1, 2, 3).normalized()));
@@ -443,7 +481,9 @@ TEST(GraspSelection, EqualGraspsKeepTheStatedOrder)
     const Vector3d axis = Vector3d(0.3, -0.7, 0.011 * attitude).normalized();
     const Detection detection =
         detectionAt({0.013, 0.027, 0.08}, AngleAxisd(0.3 + 0.003 * attitude, axis) * askew.conjugate());
-    const GraspSelection selection = selectInBin({detection, detection}, part);
+    Detection other = detection;
+    other.T_camera_object.pretranslate(Vector3d(0.08, 0, 0));
+    const GraspSelection selection = selectInBin({detection, other}, part);
     ASSERT_EQ(selection.grasps.size(), 8u);
     for (std::size_t i = 0; i < 8; ++i)
     {
@@ -454,15 +494,17 @@ TEST(GraspSelection, EqualGraspsKeepTheStatedOrder)
   }
 }
 
-TEST(GraspSelection, OnlySoManyAreReturned)
+TEST(GraspPlanner, OnlySoManyAreReturned)
 {
   GraspParameters parameters;
   parameters.max_grasps = 3;
-  const std::vector<Detection> detections(5, detectionAt({0, 0, 0.06}));
+  std::vector<Detection> detections;
+  for (const double x : {-0.12, -0.06, 0.0, 0.06, 0.12})
+    detections.push_back(detectionAt({x, 0, 0.06}));
   EXPECT_EQ(selectInBin(detections, partWith({graspFromAbove("top")}), parameters).grasps.size(), 3u);
 }
 
-TEST(GraspSelection, NothingKnownNothingOffered)
+TEST(GraspPlanner, NothingKnownNothingOffered)
 {
   EXPECT_TRUE(selectInBin({}, partWith({graspFromAbove("top")})).grasps.empty());
   EXPECT_TRUE(selectInBin({detectionAt({0, 0, 0.06})}, partWith({})).grasps.empty());
@@ -473,15 +515,174 @@ TEST(GraspSelection, NothingKnownNothingOffered)
   EXPECT_TRUE(selection.rejected.empty());
 }
 
-TEST(GraspSelection, AGripperWithoutBodiesCannotBeChecked)
+TEST(GraspPlanner, AGripperWithoutBodiesCannotBeChecked)
 {
   Gripper gripper = twoFingerGripper();
   gripper.bodies.clear();
   const Bin bin = binBelowCamera();
   const std::vector<Detection> detections = {detectionAt({0, 0, 0.06})};
   const std::vector<PartDefinition> parts = {partWith({graspFromAbove("top")})};
-  EXPECT_THROW(selectGrasps(detections, parts, gripper, &bin, {}), ParameterError);
-  EXPECT_EQ(selectGrasps(detections, parts, gripper, nullptr, {}).grasps.size(), 1u);
+  EXPECT_THROW(planWith(detections, parts, gripper, &bin, {}), ParameterError);
+}
+
+TEST(GraspPlanner, ANeighbourInTheWayOfAFingerIsNamed)
+{
+  // The finger beside the part is 25 to 31 mm from its middle along y and reaches 10 mm below it.
+  const PartDefinition part = partWith({graspFromAbove("top")});
+  const Detection target = detectionAt({0, 0, 0.06});
+  EXPECT_EQ(selectInBin({target, detectionAt({0, 0.031 + 0.014 + 0.002, 0.06})}, part).rejected.size(), 0u);
+  const GraspSelection blocked = selectInBin({target, detectionAt({0, 0.031 + 0.014 - 0.003, 0.06})}, part);
+  ASSERT_EQ(blocked.rejected.size(), 2u);  // each stands in the way of the other
+  EXPECT_EQ(blocked.rejected[0].rejection, GraspRejection::PartCollision);
+  EXPECT_EQ(blocked.rejected[0].clearance.part, 1);
+  EXPECT_NEAR(blocked.rejected[0].clearance.distance, -0.003, 0.0005);
+  EXPECT_NE(blocked.rejected[0].reason.find("finger"), std::string::npos) << blocked.rejected[0].reason;
+  EXPECT_NE(blocked.rejected[0].reason.find("part 1"), std::string::npos) << blocked.rejected[0].reason;
+
+  GraspPlanner::Request blindly;
+  blindly.check_collision = false;
+  const Bin bin = binBelowCamera();
+  const GraspSelection all =
+      planWith({target, detectionAt({0, 0.042, 0.06})}, {part}, twoFingerGripper(), &bin, {}, blindly);
+  ASSERT_EQ(all.grasps.size(), 2u);
+  EXPECT_FALSE(all.grasps[0].collision_checked);
+}
+
+TEST(GraspPlanner, ALowerPartUnderAnotherIsNotPulledOut)
+{
+  // The upper block lies across one end of the lower one; the gripper itself would pass beside it.
+  PartDefinition part = partWith({graspFromAbove("top")});
+  const GraspSelection selection = selectInBin({detectionAt({0, 0, 0.03}), detectionAt({0.018, 0, 0.0505})}, part);
+  const auto lower = std::find_if(selection.rejected.begin(), selection.rejected.end(),
+                                  [](const Grasp& g) { return g.detection_index == 0; });
+  ASSERT_NE(lower, selection.rejected.end());
+  EXPECT_TRUE(lower->rejection == GraspRejection::HeldPartCollision ||
+              lower->rejection == GraspRejection::PartCollision)
+      << lower->reason;
+}
+
+TEST(GraspPlanner, AnAvoidedPlaceIsSkippedWithItsReason)
+{
+  const std::vector<Detection> detections = {detectionAt({-0.08, 0, 0.06}), detectionAt({0.08, 0, 0.06})};
+  GraspPlanner::Request request;
+  request.avoid = [&](const Vector3d& center_camera) {
+    const bool there = (center_camera - detections[0].T_camera_object.translation()).norm() < 0.001;
+    return there ? std::string("It was missed 3 s ago.") : std::string();
+  };
+  const Bin bin = binBelowCamera();
+  const GraspSelection selection =
+      planWith(detections, {partWith({graspFromAbove("top")})}, twoFingerGripper(), &bin, {}, request);
+  ASSERT_EQ(selection.grasps.size(), 1u);
+  EXPECT_EQ(selection.grasps[0].detection_index, 1u);
+  ASSERT_EQ(selection.rejected.size(), 1u);
+  EXPECT_EQ(selection.rejected[0].rejection, GraspRejection::Avoided);
+  EXPECT_EQ(selection.rejected[0].reason, "It was missed 3 s ago.");
+}
+
+TEST(GraspPlanner, ToleranceIsUsedOnlyWhereNothingElseIsLeft)
+{
+  // Across the wall the fingers do not fit; spun by a quarter they do.
+  PartDefinition part = partWith({graspFromAbove("top")});
+  part.grasps[0].spin_tolerance = M_PI / 2;
+  const Detection at_wall = detectionAt({0, 0.13, 0.07});
+  const GraspSelection alone = selectInBin({at_wall}, part);
+  ASSERT_FALSE(alone.grasps.empty());
+  for (const Grasp& grasp : alone.grasps)
+  {
+    EXPECT_GT(std::abs(grasp.spun), 0.5);
+    EXPECT_TRUE((grasp.tip.grasp * grasp.T_tip_object).isApprox(at_wall.T_camera_object, 1e-9));
+  }
+  const GraspSelection two = selectInBin({at_wall, detectionAt({0, 0, 0.07})}, part);
+  ASSERT_EQ(two.grasps.size(), 1u) << "as written in the middle of the bin";
+  EXPECT_EQ(two.grasps[0].detection_index, 1u);
+  EXPECT_EQ(two.grasps[0].spun, 0);
+}
+
+TEST(GraspPlanner, AGripperOfAnotherKindOrWidthIsRefused)
+{
+  PartDefinition part = partWith({graspFromAbove("fingers"), graspFromAbove("suction")});
+  part.grasps[1].width = part.grasps[1].opening = 0;
+  Gripper gripper = twoFingerGripper();
+  gripper.min_opening = 0.035;
+  const Bin bin = binBelowCamera();
+  const GraspSelection selection = planWith({detectionAt({0, 0, 0.06})}, {part}, gripper, &bin, {});
+  EXPECT_TRUE(selection.grasps.empty());
+  ASSERT_EQ(selection.rejected.size(), 2u);
+  EXPECT_EQ(selection.rejected[0].rejection, GraspRejection::ClosingTooSmall);
+  EXPECT_NE(selection.rejected[0].reason.find("35.0 mm"), std::string::npos) << selection.rejected[0].reason;
+  EXPECT_EQ(selection.rejected[1].rejection, GraspRejection::OtherGripper);
+}
+
+/// The camera 0.9 m above a bin that stands 0.5 m in front of the base, on its level; frame `base`.
+Pose cameraInBase()
+{
+  Pose T_bin_base = Pose::Identity();
+  T_bin_base.translation() = Vector3d(0, 0.5, 0);  // towards +y of the bin
+  return T_bin_base.inverse() * binBelowCamera().T_camera_bin.inverse();
+}
+
+TEST(GraspPlanner, TheArmTakesTheWholeWayInOneConfiguration)
+{
+  const Robot robot = loadRobot(BIN_PICKING_SOURCE_DIR "/config/robots/ur5e.yaml");
+  const Bin bin = binBelowCamera();
+  DetectionResult result;
+  result.detections = {detectionAt({0.05, 0, 0.06})};
+  const std::vector<std::shared_ptr<const TrainedModel>> models = {blockModel()};
+  const GraspPlanner planner({{partWith({graspFromAbove("top")})}, twoFingerGripper(), robot, GraspParameters(), 1});
+  EXPECT_THROW(planner.plan({result, models, &bin, std::nullopt}, {}), ParameterError) << "where is the robot?";
+
+  const GraspSelection selection = planner.plan({result, models, &bin, cameraInBase()}, {});
+  ASSERT_EQ(selection.grasps.size(), 1u) << selection.rejected.at(0).reason;
+  const Grasp& grasp = selection.grasps[0];
+  EXPECT_TRUE(grasp.reach_checked);
+  ASSERT_EQ(grasp.joints.size(), 3u);
+  const Kinematics kinematics(robot);
+  EXPECT_TRUE(kinematics.forward(grasp.joints[0]).isApprox(cameraInBase() * grasp.tool0.pre_grasp, 1e-8));
+  EXPECT_TRUE(kinematics.forward(grasp.joints[1]).isApprox(cameraInBase() * grasp.tool0.grasp, 1e-8));
+  EXPECT_TRUE(kinematics.forward(grasp.joints[2]).isApprox(cameraInBase() * grasp.tool0.retreat, 1e-8));
+  // The tip of the gripper is where the grasp is.
+  const Pose T_base_tip = kinematics.forward(grasp.joints[1]) * twoFingerGripper().T_tool0_tip(grasp.width);
+  EXPECT_TRUE(T_base_tip.isApprox(cameraInBase() * grasp.tip.grasp, 1e-8));
+
+  // A metre farther away there is nothing that the arm could reach.
+  const Pose far = Eigen::Translation3d(0, -1, 0) * cameraInBase();
+  const GraspSelection none = planner.plan({result, models, &bin, far}, {});
+  ASSERT_EQ(none.rejected.size(), 1u);
+  EXPECT_EQ(none.rejected[0].rejection, GraspRejection::OutOfReach);
+  EXPECT_NE(none.rejected[0].reason.find(" m"), std::string::npos) << none.rejected[0].reason;
+
+  GraspPlanner::Request anywhere;
+  anywhere.check_reach = false;
+  EXPECT_EQ(planner.plan({result, models, &bin, far}, anywhere).grasps.size(), 1u);
+}
+
+TEST(GraspPlanner, TheSameForAnyNumberOfThreads)
+{
+  std::vector<Detection> detections;
+  for (const double x : {-0.15, -0.1, -0.05, 0.0, 0.05, 0.1, 0.15})
+    detections.push_back(detectionAt({x, 0.02, 0.05}, Eigen::Quaterniond(AngleAxisd(3 * x, Vector3d::UnitX()))));
+  PartDefinition part = partWith({graspFromAbove("a"), graspFromAbove("b")});
+  part.grasps[1].T_object_tip = part.grasps[1].T_object_tip * AngleAxisd(M_PI / 2, Vector3d::UnitZ());
+  DetectionResult result;
+  result.detections = detections;
+  const std::vector<std::shared_ptr<const TrainedModel>> models = {blockModel()};
+  const Bin bin = binBelowCamera();
+  const auto plan = [&](int threads) {
+    return GraspPlanner({{part}, twoFingerGripper(), std::nullopt, GraspParameters(), threads})
+        .plan({result, models, &bin, std::nullopt}, {});
+  };
+  const GraspSelection one = plan(1);
+  const GraspSelection four = plan(4);
+  ASSERT_EQ(one.grasps.size(), four.grasps.size());
+  ASSERT_EQ(one.rejected.size(), four.rejected.size());
+  for (std::size_t i = 0; i < one.grasps.size(); ++i)
+  {
+    EXPECT_EQ(one.grasps[i].grasp_id, four.grasps[i].grasp_id);
+    EXPECT_EQ(one.grasps[i].quality, four.grasps[i].quality);
+    EXPECT_EQ(one.grasps[i].clearance.distance, four.grasps[i].clearance.distance);
+  }
+  for (std::size_t i = 0; i < one.rejected.size(); ++i)
+    EXPECT_EQ(one.rejected[i].reason, four.rejected[i].reason);
 }
 
 TEST(GraspParameters, DefaultsLieWithinTheirRanges)

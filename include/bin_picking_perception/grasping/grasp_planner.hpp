@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/detector.hpp"
+#include "bin_picking_perception/grasping/grasp.hpp"
+#include "bin_picking_perception/grasping/grasp_expansion.hpp"
+#include "bin_picking_perception/grasping/grasp_parameters.hpp"
+#include "bin_picking_perception/grasping/gripper.hpp"
+#include "bin_picking_perception/model/part.hpp"
+#include "bin_picking_perception/robot/robot.hpp"
+
+namespace bin_picking
+{
+/// From detections to grasps that a robot can take: each grasp of each part, expanded by symmetry and tolerance, is
+/// held against what a person would check, in this order: the detection, the gripper's opening, the avoid list, the
+/// tilt, the collisions of the whole way, the robot's reach. What remains is ranked. Immutable; thread-safe.
+class GraspPlanner
+{
+public:
+  struct Setup
+  {
+    std::vector<PartDefinition> parts;  ///< by name; a detection of a part without definition has no grasps
+    Gripper gripper;
+    std::optional<Robot> robot;  ///< none: reach is not checked
+    GraspParameters parameters;
+    int num_threads = 0;  ///< 0: as many as the machine has
+  };
+
+  /// \throws ParameterError a parameter out of its range; a gripper without bodies
+  explicit GraspPlanner(Setup setup);
+
+  struct Scene
+  {
+    const DetectionResult& detection;
+    const std::vector<std::shared_ptr<const TrainedModel>>& models;  ///< that Detection::model_index points into
+    const Bin* bin = nullptr;           ///< nullptr: no wall check; tilt is measured against the view direction
+    std::optional<Pose> T_base_camera;  ///< of the robot's DH base; needed where reach is checked
+  };
+
+  struct Request
+  {
+    bool accept_undetermined_turn = false;  ///< also parts whose turn about an axis is not known, at the stated pose
+    bool check_collision = true;
+    bool check_reach = true;
+    /// Whether an attempt at a part with its middle there (camera frame) is to be avoided, and why; empty: none is.
+    std::function<std::string(const Eigen::Vector3d& center_camera)> avoid;
+    std::size_t max_grasps = 0;  ///< fewer than the parameter; 0: that many
+  };
+
+  /// \throws ParameterError reach is to be checked, but T_base_camera is missing
+  GraspSelection plan(const Scene& scene, const Request& request) const;
+
+  const Setup& setup() const { return setup_; }
+
+private:
+  Setup setup_;
+  std::optional<Kinematics> kinematics_;
+  std::map<std::string, std::vector<GraspVariant>> variants_;  ///< per part
+  Executor executor_;
+};
+}  // namespace bin_picking
