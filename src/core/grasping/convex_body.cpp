@@ -50,6 +50,7 @@ bool touchesAlongAnEdge(const std::vector<Vector3d>& vertices, const Vector3d& a
 /// that looks ahead.
 std::vector<Vector3d> sweptVertices(const ConvexBody& body, const Vector3d& motion)
 {
+  const Vector3d direction = motion.normalized();
   std::vector<Vector3d> vertices;
   for (const Vector3d& v : body.vertices)
   {
@@ -58,8 +59,8 @@ std::vector<Vector3d> sweptVertices(const ConvexBody& body, const Vector3d& moti
     for (const Vector4d& plane : body.planes)
       if (plane.head<3>().dot(v) + plane.w() > -ON_PLANE)
       {
-        looks_back = looks_back || plane.head<3>().dot(motion) < 0;
-        looks_ahead = looks_ahead || plane.head<3>().dot(motion) > 0;
+        looks_back = looks_back || plane.head<3>().dot(direction) < -MIN_CROSS_PRODUCT;
+        looks_ahead = looks_ahead || plane.head<3>().dot(direction) > MIN_CROSS_PRODUCT;
       }
     if (looks_back || !looks_ahead)
       vertices.push_back(v);

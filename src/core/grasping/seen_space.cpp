@@ -265,7 +265,8 @@ struct SeenSpace::Search
   const SeenSpace& space;
   const BodySweep& body;
   const OwnPixels& target;
-  Encounter worst;
+  Encounter surface;
+  Encounter unseen;
 
   void block(int u, int v)
   {
@@ -292,11 +293,11 @@ struct SeenSpace::Search
     for (int k = 0; k < BLOCK; ++k)
     {
       if (lanes.beyond[k] > 0)
-        keepWorse(worst, {-lanes.beyond[k], 0, ObstacleKind::Unknown, -1,
+        keepWorse(unseen, {-lanes.beyond[k], 0, ObstacleKind::Unknown, -1,
                           (lanes.allowed[k] + lanes.beyond[k]) * space.ray(u + k, v)});
       if (lanes.distance[k] < LOOK_AHEAD && space.measured_[first + static_cast<std::size_t>(k)] != 0 &&
           !own[static_cast<std::size_t>(k)])
-        keepWorse(worst,
+        keepWorse(surface,
                   {lanes.distance[k], space.surface_clearance_, ObstacleKind::Surface, -1, space.pointAt(u + k, v)});
     }
   }
@@ -304,13 +305,14 @@ struct SeenSpace::Search
 
 Encounter SeenSpace::nearest(const BodySweep& body, const OwnPixels& target) const
 {
-  Search search{*this, body, target, {}};
+  Search search{*this, body, target, {}, {}};
   const Window w = windowOf(body.shape.vertices, LOOK_AHEAD);
   const float deepest = body.box.max().z() + LOOK_AHEAD;
   for (int v = w.top / BLOCK * BLOCK; v < w.bottom; v += BLOCK)
     for (int u = w.left / BLOCK * BLOCK; u < w.right; u += BLOCK)
       if (block_nearest_[static_cast<std::size_t>(v / BLOCK * (stride_ / BLOCK) + u / BLOCK)] <= deepest)
         search.block(u, v);
-  return search.worst;
+  // What was measured explains more than what was not, whose depth along the ray cannot be compared.
+  return search.surface.free() && search.unseen.margin() < search.surface.margin() ? search.unseen : search.surface;
 }
 }  // namespace bin_picking
