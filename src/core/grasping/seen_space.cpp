@@ -294,7 +294,7 @@ struct SeenSpace::Search
     {
       if (lanes.beyond[k] > 0)
         keepWorse(unseen, {-lanes.beyond[k], 0, ObstacleKind::Unknown, -1,
-                          (lanes.allowed[k] + lanes.beyond[k]) * space.ray(u + k, v)});
+                           (lanes.allowed[k] + lanes.beyond[k]) * space.ray(u + k, v)});
       if (lanes.distance[k] < LOOK_AHEAD && space.measured_[first + static_cast<std::size_t>(k)] != 0 &&
           !own[static_cast<std::size_t>(k)])
         keepWorse(surface,
