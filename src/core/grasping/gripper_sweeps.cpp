@@ -120,19 +120,18 @@ ConvexBody between(const Gripper& gripper, std::size_t body, double from, double
 }
 }  // namespace
 
-std::vector<GripperSweep> sweepsOf(const Gripper& gripper, const ToolMotion& motion)
+void visitSweeps(const Gripper& gripper, const ToolMotion& motion, const SweepVisitor& visit)
 {
-  std::vector<GripperSweep> sweeps;
   for (const std::size_t i : orderOf(gripper))
-    sweeps.push_back({i, false,
-                      BodySweep(swept(transformed(gripper.bodyAt(i, motion.opening), motion.T_camera_tool0),
-                                      motion.motion_camera))});
-  return sweeps;
+    if (!visit({i, false,
+                BodySweep(swept(transformed(gripper.bodyAt(i, motion.opening), motion.T_camera_tool0),
+                                motion.motion_camera))}))
+      return;
 }
 
-std::vector<GripperSweep> closingSweepsOf(const Gripper& gripper, const Pose& T_camera_tool0, double from, double to)
+void visitClosingSweeps(const Gripper& gripper, const Pose& T_camera_tool0, double from, double to,
+                        const SweepVisitor& visit)
 {
-  std::vector<GripperSweep> sweeps;
   for (const std::size_t i : orderOf(gripper))
   {
     const GripperBody& body = gripper.bodies[i];
@@ -140,9 +139,9 @@ std::vector<GripperSweep> closingSweepsOf(const Gripper& gripper, const Pose& T_
       continue;  // it rests where the way in has already checked it
     const std::vector<double> stops = stopsOf(body, from, to);
     for (std::size_t k = 1; k < stops.size(); ++k)
-      sweeps.push_back(
-          {i, body.touches_part, BodySweep(transformed(between(gripper, i, stops[k - 1], stops[k]), T_camera_tool0))});
+      if (!visit({i, body.touches_part,
+                  BodySweep(transformed(between(gripper, i, stops[k - 1], stops[k]), T_camera_tool0))}))
+        return;
   }
-  return sweeps;
 }
 }  // namespace bin_picking
