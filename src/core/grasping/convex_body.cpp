@@ -39,17 +39,27 @@ bool isAmong(const std::vector<Vector4d>& planes, const Vector3d& normal)
   });
 }
 
-/// Whether the outermost corners along the axis span an edge (or a face).
-bool touchesAlongAnEdge(const std::vector<Vector3d>& vertices, const Vector3d& axis, double farthest)
+/// Whether the outermost corners along the axis span an edge that the motion does not only move along itself.
+bool sweepsAFace(const std::vector<Vector3d>& vertices, const Vector3d& axis, double farthest,
+                 const Vector3d& direction)
 {
-  return std::count_if(vertices.begin(), vertices.end(),
-                       [&](const Vector3d& v) { return axis.dot(v) > farthest - ON_PLANE; }) >= 2;
+  const Vector3d* first = nullptr;
+  for (const Vector3d& v : vertices)
+  {
+    if (axis.dot(v) < farthest - ON_PLANE)
+      continue;
+    if (first && (v - *first).cross(direction).norm() > ON_PLANE)
+      return true;
+    first = first ? first : &v;
+  }
+  return false;
 }
 
 /// The corners that remain corners of the sweep: at the start those of a face that looks back, at the end those of one
 /// that looks ahead.
 std::vector<Vector3d> sweptVertices(const ConvexBody& body, const Vector3d& motion)
 {
+  const Vector3d direction = motion.normalized();
   std::vector<Vector3d> vertices;
   for (const Vector3d& v : body.vertices)
   {
@@ -58,8 +68,8 @@ std::vector<Vector3d> sweptVertices(const ConvexBody& body, const Vector3d& moti
     for (const Vector4d& plane : body.planes)
       if (plane.head<3>().dot(v) + plane.w() > -ON_PLANE)
       {
-        looks_back = looks_back || plane.head<3>().dot(motion) < 0;
-        looks_ahead = looks_ahead || plane.head<3>().dot(motion) > 0;
+        looks_back = looks_back || plane.head<3>().dot(direction) < -MIN_CROSS_PRODUCT;
+        looks_ahead = looks_ahead || plane.head<3>().dot(direction) > MIN_CROSS_PRODUCT;
       }
     if (looks_back || !looks_ahead)
       vertices.push_back(v);
@@ -147,7 +157,7 @@ ConvexBody swept(const ConvexBody& body, const Vector3d& motion)
     for (const Vector3d& normal : {Vector3d(cross.normalized()), Vector3d(-cross.normalized())})
     {
       const double farthest = reach(body.vertices, normal);
-      if (touchesAlongAnEdge(body.vertices, normal, farthest) && !isAmong(sweep.planes, normal))
+      if (sweepsAFace(body.vertices, normal, farthest, direction) && !isAmong(sweep.planes, normal))
         sweep.planes.emplace_back(normal.x(), normal.y(), normal.z(), -farthest);
     }
   }

@@ -3,6 +3,8 @@
 #include "gripper_sweeps.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "bin_picking_perception/common/error.hpp"
 
@@ -37,6 +39,71 @@ std::vector<double> stopsOf(const GripperBody& body, double from, double to)
   return stops;
 }
 
+/// Whether each face looks along X or across it, as those of a box do; bodies turn about X.
+bool isPrismAlongX(const ConvexBody& body)
+{
+  return std::all_of(body.planes.begin(), body.planes.end(), [](const Eigen::Vector4d& plane) {
+    return std::abs(plane.x()) < 1e-9 || std::abs(plane.x()) > 1 - 1e-9;
+  });
+}
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// The hull of points in a plane, counter-clockwise (Andrew's monotone chain).
+std::vector<Eigen::Vector2d> outlineOf(std::vector<Eigen::Vector2d> points)
+{
+  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
+  std::vector<Eigen::Vector2d> outline;
+  for (int half = 0; half < 2; ++half)
+  {
+    const std::size_t kept = outline.size();
+    for (const Eigen::Vector2d& p : points)
+    {
+      while (outline.size() >= kept + 2 &&
+             cross(outline.back() - outline[outline.size() - 2], p - outline.back()) <= 1e-15)
+        outline.pop_back();
+      outline.push_back(p);
+    }
+    outline.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return outline;
+}
+
+/// The hull of two prisms along X of the same length, by their outlines: makeHull would take far longer.
+ConvexBody prismAround(const ConvexBody& a, const ConvexBody& b)
+{
+  std::vector<Eigen::Vector2d> points;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const ConvexBody* body : {&a, &b})
+    for (const Eigen::Vector3d& v : body->vertices)
+    {
+      points.emplace_back(v.y(), v.z());
+      low = std::min(low, v.x());
+      high = std::max(high, v.x());
+    }
+  const std::vector<Eigen::Vector2d> outline = outlineOf(points);
+  ConvexBody prism;
+  prism.planes = {{1, 0, 0, -high}, {-1, 0, 0, low}};
+  prism.edges = {Eigen::Vector3d::UnitX()};
+  for (std::size_t i = 0; i < outline.size(); ++i)
+  {
+    const Eigen::Vector2d& p = outline[i];
+    const Eigen::Vector2d along = (outline[(i + 1) % outline.size()] - p).normalized();
+    prism.planes.emplace_back(0, along.y(), -along.x(), along.x() * p.y() - along.y() * p.x());
+    prism.vertices.emplace_back(low, p.x(), p.y());
+    prism.vertices.emplace_back(high, p.x(), p.y());
+    const Eigen::Vector3d edge(0, along.x(), along.y());
+    if (std::none_of(prism.edges.begin(), prism.edges.end(),
+                     [&](const Eigen::Vector3d& other) { return other.cross(edge).norm() < 1e-9; }))
+      prism.edges.push_back(edge);
+  }
+  return prism;
+}
+
 ConvexBody between(const Gripper& gripper, std::size_t body, double from, double to)
 {
   const ConvexBody start = gripper.bodyAt(body, from);
@@ -44,6 +111,8 @@ ConvexBody between(const Gripper& gripper, std::size_t body, double from, double
   const Pose T_end = gripper.T_tool0_body(body, to);
   if (T_start.linear().isApprox(T_end.linear(), 1e-9))
     return swept(start, T_end.translation() - T_start.translation());
+  if (isPrismAlongX(start))
+    return prismAround(start, gripper.bodyAt(body, to));
   std::vector<Eigen::Vector3d> corners = start.vertices;
   for (const Eigen::Vector3d& v : gripper.bodyAt(body, to).vertices)
     corners.push_back(v);
@@ -51,19 +120,18 @@ ConvexBody between(const Gripper& gripper, std::size_t body, double from, double
 }
 }  // namespace
 
-std::vector<GripperSweep> sweepsOf(const Gripper& gripper, const ToolMotion& motion)
+void visitSweeps(const Gripper& gripper, const ToolMotion& motion, const SweepVisitor& visit)
 {
-  std::vector<GripperSweep> sweeps;
   for (const std::size_t i : orderOf(gripper))
-    sweeps.push_back({i, false,
-                      BodySweep(swept(transformed(gripper.bodyAt(i, motion.opening), motion.T_camera_tool0),
-                                      motion.motion_camera))});
-  return sweeps;
+    if (!visit({i, false,
+                BodySweep(swept(transformed(gripper.bodyAt(i, motion.opening), motion.T_camera_tool0),
+                                motion.motion_camera))}))
+      return;
 }
 
-std::vector<GripperSweep> closingSweepsOf(const Gripper& gripper, const Pose& T_camera_tool0, double from, double to)
+void visitClosingSweeps(const Gripper& gripper, const Pose& T_camera_tool0, double from, double to,
+                        const SweepVisitor& visit)
 {
-  std::vector<GripperSweep> sweeps;
   for (const std::size_t i : orderOf(gripper))
   {
     const GripperBody& body = gripper.bodies[i];
@@ -71,9 +139,9 @@ std::vector<GripperSweep> closingSweepsOf(const Gripper& gripper, const Pose& T_
       continue;  // it rests where the way in has already checked it
     const std::vector<double> stops = stopsOf(body, from, to);
     for (std::size_t k = 1; k < stops.size(); ++k)
-      sweeps.push_back(
-          {i, body.touches_part, BodySweep(transformed(between(gripper, i, stops[k - 1], stops[k]), T_camera_tool0))});
+      if (!visit({i, body.touches_part,
+                  BodySweep(transformed(between(gripper, i, stops[k - 1], stops[k]), T_camera_tool0))}))
+        return;
   }
-  return sweeps;
 }
 }  // namespace bin_picking

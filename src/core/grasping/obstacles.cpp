@@ -3,6 +3,7 @@
 #include "bin_picking_perception/grasping/obstacles.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -60,12 +61,11 @@ struct Obstacles::Impl
   std::map<const TrainedModel*, std::unique_ptr<SurfaceBlocks>> surfaces;
   std::vector<Part> parts;
 
-  const Part& target(std::size_t index) const
+  void checkTarget(std::size_t index) const
   {
     if (index >= parts.size())
       throw ParameterError("There is no part " + std::to_string(index) +
                            " to be taken: " + std::to_string(parts.size()) + " parts were detected.");
-    return parts[index];
   }
 
   void preparePart(std::size_t i)
@@ -143,7 +143,7 @@ struct Obstacles::Impl
         way.meet(*parts[i].surface, parts[i].placed.T_camera_object, static_cast<int>(i), worst);
     if (seen && worst.free())
       seen->forEachPoint(way.box(), [&](int u, int v, const Eigen::Vector3f& point) {
-        if (!held.pixels.at(u, v))
+        if (way.box().contains(point) && !held.pixels.at(u, v))
           way.meet(point, ObstacleKind::Surface, -1, worst);
       });
     return worst;
@@ -186,25 +186,26 @@ struct Obstacles::Impl
     return clearance;
   }
 
-  /// The worst of all sweeps, or of the first that comes too near.
-  Clearance worstOf(const Gripper& gripper, const std::vector<GripperSweep>& sweeps, std::size_t target,
-                    bool target_counts) const
+  /// Keeps the worst of all sweeps, up to the first that comes too near.
+  struct Watch
   {
-    Encounter worst;
+    const Impl& impl;
+    std::size_t target;
+    bool target_counts;
+    Encounter worst = {};
     std::size_t body = 0;
-    for (const GripperSweep& sweep : sweeps)
+
+    bool operator()(const GripperSweep& sweep)
     {
-      const Encounter met = meet(sweep.sweep, target, target_counts && !sweep.may_touch_target);
+      const Encounter met = impl.meet(sweep.sweep, target, target_counts && !sweep.may_touch_target);
       if (met.margin() < worst.margin())
       {
         worst = met;
         body = sweep.body;
       }
-      if (!worst.free())
-        break;
+      return worst.free();
     }
-    return inWords(worst, gripper.bodies[body].name);
-  }
+  };
 };
 
 Obstacles::Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<PlacedPart> parts,
@@ -244,24 +245,32 @@ Obstacles& Obstacles::operator=(Obstacles&&) noexcept = default;
 
 Clearance Obstacles::approach(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const
 {
-  impl_->target(target);
-  return impl_->worstOf(gripper, sweepsOf(gripper, motion), target, true);
+  impl_->checkTarget(target);
+  Impl::Watch watch{*impl_, target, true};
+  visitSweeps(gripper, motion, std::ref(watch));
+  return impl_->inWords(watch.worst, gripper.bodies[watch.body].name);
 }
 
 Clearance Obstacles::closing(const Gripper& gripper, const Pose& T_camera_tool0, double from, double to,
                              std::size_t target) const
 {
-  impl_->target(target);
-  return impl_->worstOf(gripper, closingSweepsOf(gripper, T_camera_tool0, from, to), target, true);
+  impl_->checkTarget(target);
+  Impl::Watch watch{*impl_, target, true};
+  visitClosingSweeps(gripper, T_camera_tool0, from, to, std::ref(watch));
+  return impl_->inWords(watch.worst, gripper.bodies[watch.body].name);
 }
 
 Clearance Obstacles::retreat(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const
 {
-  impl_->target(target);
-  const Clearance of_gripper = impl_->worstOf(gripper, sweepsOf(gripper, motion), target, false);
-  if (!of_gripper.free())
-    return of_gripper;
-  const Clearance of_part = impl_->inWords(impl_->meetHeld(motion.motion_camera, target), "held part");
-  return of_part.distance - of_part.required < of_gripper.distance - of_gripper.required ? of_part : of_gripper;
+  impl_->checkTarget(target);
+  Impl::Watch watch{*impl_, target, false};
+  visitSweeps(gripper, motion, std::ref(watch));
+  if (watch.worst.free())
+  {
+    const Encounter of_part = impl_->meetHeld(motion.motion_camera, target);
+    if (of_part.margin() < watch.worst.margin())
+      return impl_->inWords(of_part, "held part");
+  }
+  return impl_->inWords(watch.worst, gripper.bodies[watch.body].name);
 }
 }  // namespace bin_picking

@@ -87,13 +87,27 @@ void SeenSpace::extendTo(const DepthGrid& measured, const Bin* bin)
 
 void SeenSpace::bridgeGaps(const DepthGrid& measured, const Bin* bin)
 {
-  for (const bool open_ends : {false, true})
-  {
-    for (int v = 0; v < measured.height; ++v)
-      bridge(static_cast<int>(index(left_, top_ + v)), 1, measured.width, open_ends);
+  // Of each row and column the first and the last measured pixel; on the way, what lies between two is bridged.
+  std::vector<Ends> columns(static_cast<std::size_t>(measured.width));
+  std::vector<Ends> rows(static_cast<std::size_t>(measured.height));
+  for (int v = 0; v < measured.height; ++v)
     for (int u = 0; u < measured.width; ++u)
-      bridge(static_cast<int>(index(left_ + u, top_)), stride_, measured.height, open_ends);
-  }
+    {
+      const std::size_t i = index(left_ + u, top_ + v);
+      if (measured_[i] == 0)
+        continue;
+      bridgeTo(i, 1, rows[static_cast<std::size_t>(v)]);
+      bridgeTo(i, static_cast<std::size_t>(stride_), columns[static_cast<std::size_t>(u)]);
+    }
+  for (int v = 0; v < measured.height; ++v)
+    for (int u = 0; u < measured.width; ++u)
+    {
+      const std::size_t i = index(left_ + u, top_ + v);
+      if (depth_[i] == FAR_AWAY)
+        for (const Ends& ends : {rows[static_cast<std::size_t>(v)], columns[static_cast<std::size_t>(u)]})
+          if (ends.any)
+            offer(i, depth_[i < ends.first ? ends.first : ends.last], i < ends.first ? ends.first : ends.last);
+    }
   if (!bin)
     return;
   for (int v = 0; v < height_; ++v)
@@ -102,38 +116,29 @@ void SeenSpace::bridgeGaps(const DepthGrid& measured, const Bin* bin)
         depth_[index(u, v)] = depthAtRim(*bin, ray(u, v).cast<double>());
 }
 
-/// Straight lines across the gaps of one row or column. The nearer of what row and column say remains.
-/// \param open_ends only gaps that have one end, and only pixels that no bridge crosses
-void SeenSpace::bridge(int begin, int step, int count, bool open_ends)
+/// The nearer of what is said of a pixel remains.
+void SeenSpace::offer(std::size_t pixel, float depth, std::size_t hidden_by)
 {
-  const auto at = [&](int i) { return static_cast<std::size_t>(begin + i * step); };
-  const auto offer = [&](int i, float depth, int hidden_by) {
-    const bool nearer = depth < depth_[at(i)];
-    if (!nearer || (open_ends && hidden_by_[at(i)] >= 0 && depth_[at(i)] < FAR_AWAY))
-      return;
-    depth_[at(i)] = depth;
-    hidden_by_[at(i)] = static_cast<std::int32_t>(at(hidden_by));
-  };
-  int before = -1;
-  for (int i = 0; i <= count; ++i)
+  if (depth >= depth_[pixel])
+    return;
+  depth_[pixel] = depth;
+  hidden_by_[pixel] = static_cast<std::int32_t>(hidden_by);
+}
+
+/// A straight line from the last measured pixel of a row or column to the next.
+void SeenSpace::bridgeTo(std::size_t next, std::size_t step, Ends& ends)
+{
+  const std::size_t last = ends.any ? ends.last : next;
+  const std::size_t count = (next - last) / step;
+  const float a = depth_[last];
+  const float b = depth_[next];
+  for (std::size_t k = 1; k < count; ++k)
   {
-    if (i < count && measured_[at(i)] == 0)
-      continue;
-    const bool has_begin = before >= 0;
-    const bool has_end = i < count;
-    for (int k = before + 1; k < i; ++k)
-      if (has_begin && has_end && !open_ends)
-      {
-        // Along a straight line in space the inverse of the depth is linear in the picture.
-        const float share = static_cast<float>(k - before) / static_cast<float>(i - before);
-        const float a = depth_[at(before)];
-        const float b = depth_[at(i)];
-        offer(k, a * b / (b + share * (a - b)), a < b ? before : i);
-      }
-      else if (has_begin != has_end && open_ends)
-        offer(k, depth_[at(has_begin ? before : i)], has_begin ? before : i);
-    before = i;
+    // Along a straight line in space the inverse of the depth is linear in the picture.
+    const float share = static_cast<float>(k) / static_cast<float>(count);
+    offer(last + k * step, a * b / (b + share * (a - b)), a < b ? last : next);
   }
+  ends = {true, ends.any ? ends.first : next, next};
 }
 
 /// The largest depth within `entry` along rows and columns, and `entry` more: how far a body may go that may be off the
@@ -223,7 +228,11 @@ OwnPixels SeenSpace::ownPixels(const DistanceField& field, const Eigen::AlignedB
   pixels.height = std::max(0, w.bottom - w.top);
   pixels.own.assign(static_cast<std::size_t>(pixels.width * pixels.height), 0);
   const Eigen::Isometry3f T_object(T_camera_object.inverse().cast<float>());
+  const float nearest = box.min().z() - tolerance;
+  const float farthest = box.max().z() + tolerance;
   const auto isOwn = [&](std::size_t i) {
+    if (!(depth_[i] >= nearest && depth_[i] <= farthest))
+      return false;
     const auto u = static_cast<int>(i) % stride_;
     const auto v = static_cast<int>(i) / stride_;
     return std::abs(field.at(T_object * pointAt(u, v))) <= tolerance;
@@ -265,7 +274,8 @@ struct SeenSpace::Search
   const SeenSpace& space;
   const BodySweep& body;
   const OwnPixels& target;
-  Encounter worst;
+  Encounter surface;
+  Encounter unseen;
 
   void block(int u, int v)
   {
@@ -292,11 +302,11 @@ struct SeenSpace::Search
     for (int k = 0; k < BLOCK; ++k)
     {
       if (lanes.beyond[k] > 0)
-        keepWorse(worst, {-lanes.beyond[k], 0, ObstacleKind::Unknown, -1,
-                          (lanes.allowed[k] + lanes.beyond[k]) * space.ray(u + k, v)});
+        keepWorse(unseen, {-lanes.beyond[k], 0, ObstacleKind::Unknown, -1,
+                           (lanes.allowed[k] + lanes.beyond[k]) * space.ray(u + k, v)});
       if (lanes.distance[k] < LOOK_AHEAD && space.measured_[first + static_cast<std::size_t>(k)] != 0 &&
           !own[static_cast<std::size_t>(k)])
-        keepWorse(worst,
+        keepWorse(surface,
                   {lanes.distance[k], space.surface_clearance_, ObstacleKind::Surface, -1, space.pointAt(u + k, v)});
     }
   }
@@ -304,13 +314,14 @@ struct SeenSpace::Search
 
 Encounter SeenSpace::nearest(const BodySweep& body, const OwnPixels& target) const
 {
-  Search search{*this, body, target, {}};
+  Search search{*this, body, target, {}, {}};
   const Window w = windowOf(body.shape.vertices, LOOK_AHEAD);
   const float deepest = body.box.max().z() + LOOK_AHEAD;
   for (int v = w.top / BLOCK * BLOCK; v < w.bottom; v += BLOCK)
     for (int u = w.left / BLOCK * BLOCK; u < w.right; u += BLOCK)
       if (block_nearest_[static_cast<std::size_t>(v / BLOCK * (stride_ / BLOCK) + u / BLOCK)] <= deepest)
         search.block(u, v);
-  return search.worst;
+  // What was measured explains more than what was not, whose depth along the ray cannot be compared.
+  return search.surface.free() && search.unseen.margin() < search.surface.margin() ? search.unseen : search.surface;
 }
 }  // namespace bin_picking

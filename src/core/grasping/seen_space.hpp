@@ -56,6 +56,13 @@ private:
   {
     int left, top, right, bottom;
   };
+  /// First and last measured pixel of a row or a column.
+  struct Ends
+  {
+    bool any = false;
+    std::size_t first = 0;
+    std::size_t last = 0;
+  };
   /// Where a body may meet something in a block of pixels, row by row.
   struct Search;
 
@@ -71,7 +78,8 @@ private:
   bool mayMeet(const Planes& planes, int u, int v, float nearest) const;
   void extendTo(const DepthGrid& measured, const Bin* bin);
   void bridgeGaps(const DepthGrid& measured, const Bin* bin);
-  void bridge(int begin, int step, int count, bool open_ends);
+  void bridgeTo(std::size_t next, std::size_t step, Ends& ends);
+  void offer(std::size_t pixel, float depth, std::size_t hidden_by);
   std::vector<float> allowedDepth(float entry) const;
   void findBlockMinima();
 
