@@ -38,7 +38,7 @@ void NodeParameters::visit(bin_picking::ParameterVisitor& v)
           std::vector<std::string>{});
   v.field({"bin_frame", "", "tf frame of the bin (middle of the inner floor, z up); replaces the pose in the file"},
           bin_frame, std::vector<std::string>{});
-  v.field({"gripper", "", "YAML file with the gripper's opening and boxes"}, gripper, std::vector<std::string>{});
+  v.field({"gripper", "", "YAML file that describes the gripper"}, gripper, std::vector<std::string>{});
   v.field({"output_frame", "", "frame of all results; empty: the frame of the cloud"}, output_frame,
           std::vector<std::string>{});
   v.field({"tf_prefix", "", "put before the names of the published tf frames; keeps two detectors apart"}, tf_prefix,
