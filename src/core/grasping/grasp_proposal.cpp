@@ -114,7 +114,9 @@ public:
       return std::nullopt;
     const double contact = std::min(check.right.area, check.left.area);
     const double distance = (grasp.T_object_tip.translation() - center_).norm();
-    candidate.worth = 0.5 * std::min(1.0, contact / CONTACT_ENOUGH) + 0.5 * std::max(0.0, 1 - 2 * distance / size_);
+    const double room = grasp.opening / gripper_.max_opening;  // wide fingers find less room among other parts
+    candidate.worth = (0.5 * std::min(1.0, contact / CONTACT_ENOUGH) + 0.5 * std::max(0.0, 1 - 2 * distance / size_)) *
+                      (1 - 0.5 * room * room);
     addTilt(grasp);
     candidate.covers = coveredBy(grasp, part_.symmetry);
     return candidate;
