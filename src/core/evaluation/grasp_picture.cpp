@@ -18,6 +18,7 @@ namespace bin_picking
 namespace
 {
 constexpr int TILE = 360;  // pixels
+constexpr int TITLE = 26;  // of it, for the name
 constexpr int COLUMNS = 4;
 constexpr double FAR = 3.0;      // metres to the camera: nearly parallel rays
 constexpr double MARGIN = 0.03;  // metres round the part
@@ -100,6 +101,7 @@ cv::Mat drawTile(const TriangleMesh& mesh, const Gripper& gripper, const DrawnGr
         renderer.camera().project(viewOfTip() * drawn.grasp.T_object_tip.inverse() * drawn.check.closest_at);
     cv::circle(tile, cv::Point(static_cast<int>(at.x()), static_cast<int>(at.y())), 7, RED, 2, cv::LINE_AA);
   }
+  cv::rectangle(tile, {0, 0, TILE, TITLE}, BACKGROUND, cv::FILLED);
   const auto write = [&](const std::string& text, int y) {
     cv::putText(tile, text, {8, y}, cv::FONT_HERSHEY_SIMPLEX, 0.42, good ? BLACK : RED, 1, cv::LINE_AA);
   };

@@ -30,7 +30,8 @@ std::string degrees(double angle) { return fixed(angle * 180 / M_PI, 1) + " deg"
 
 std::string list(const Eigen::Vector3d& v)
 {
-  return "[" + fixed(v.x(), 4) + ", " + fixed(v.y(), 4) + ", " + fixed(v.z(), 4) + "]";
+  const auto text = [](double value) { return fixed(std::abs(value) < 5e-5 ? 0.0 : value, 4); };  // never -0
+  return "[" + text(v.x()) + ", " + text(v.y()) + ", " + text(v.z()) + "]";
 }
 
 /// What the gripper cannot do, whatever the part.
@@ -146,7 +147,7 @@ GraspCheck GraspChecker::check(const GraspDefinition& grasp, const Pose& T_objec
   if (result.clearance < parameters_.min_clearance)
     result.findings.push_back(wayInFinding(grasp, T_object_tip, result));
   std::string body;
-  if (!std::isnan(result.width) && result.clearance >= parameters_.min_clearance)
+  if (result.good())  // else the fingers close elsewhere
     if (const double depth = closing(grasp, T_object_tip, result.offset, body); depth < 0)
       result.findings.push_back({Fault::Closing, "the " + body + " would cut " + millimetres(-depth) +
                                                      " into the part while the fingers close; move the grasp away from "
