@@ -182,7 +182,7 @@ TEST(GraspCheckOfABall, isMeasured)
   grasp.spin_tolerance = 180 * DEGREE;
   const GraspCheck check = checker.check(grasp);
   EXPECT_TRUE(check.good()) << check.findings.front().sentence;
-  EXPECT_NEAR(check.width, 0.024, 2e-5);
+  EXPECT_NEAR(check.width, 0.024, 5e-5);  // rays up to 0.35 mm beside the farthest point, flat facets
   // The cap is round, cut off 5 mm beyond the tip only.
   EXPECT_NEAR(check.right.area, M_PI * 2 * 0.012 * 0.0003, 4e-6);
 }
