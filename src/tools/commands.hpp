@@ -18,5 +18,6 @@ Command detectCommand();
 Command matchCommand();
 Command evaluateCommand();
 Command simulateCommand();
+Command graspsCommand();
 Command parametersCommand();
 }  // namespace bin_picking::tools

@@ -23,7 +23,8 @@ constexpr int WRONG_USAGE = 2;
 
 std::vector<Command> commands()
 {
-  return {trainCommand(), detectCommand(), matchCommand(), evaluateCommand(), simulateCommand(), parametersCommand()};
+  return {trainCommand(),    detectCommand(), matchCommand(),     evaluateCommand(),
+          simulateCommand(), graspsCommand(), parametersCommand()};
 }
 
 void printOverview(std::ostream& out)

@@ -5,7 +5,9 @@
 #include <iostream>
 
 #include "bin_picking_perception/detector_parameters.hpp"
+#include "bin_picking_perception/grasping/grasp_check.hpp"
 #include "bin_picking_perception/model/training_parameters.hpp"
+#include "bin_picking_perception/robot/reach.hpp"
 #include "commands.hpp"
 #include "virtual_cell.hpp"
 
@@ -31,14 +33,20 @@ void parameters(const Arguments& arguments)
   DetectorParameters detector = DetectorParameters::preset(arguments.value("--preset", "fast"));
   TrainingParameters training;
   simulation::CellParameters cell;
+  GraspCheckParameters grasps;
+  ReachParameters reach;
   if (command == "detect")
     print(arguments, "detector", detector);
   else if (command == "train")
     print(arguments, "training", training);
   else if (command == "simulate")
     print(arguments, "simulate", cell);
+  else if (command == "grasps")
+    print(arguments, "grasps", grasps);
+  else if (command == "reach")
+    print(arguments, "reach", reach);
   else
-    throw UsageError("--of is '" + command + "', but it must be one of: detect, train, simulate");
+    throw UsageError("--of is '" + command + "', but it must be one of: detect, train, simulate, grasps, reach");
 }
 }  // namespace
 
@@ -48,7 +56,7 @@ Command parametersCommand()
            "Lists every parameter with its value, unit, range and effect; as YAML that --config reads, or as a table.",
            {},
            {{"--preset", "NAME", Values::One, "paper, fast or accurate (default fast)"},
-            {"--of", "COMMAND", Values::One, "detect (default), train or simulate"},
+            {"--of", "COMMAND", Values::One, "detect (default), train, simulate, grasps or reach"},
             {"--markdown", "", Values::None, "a Markdown table in place of YAML"}},
            "parameters --preset accurate > accurate.yaml"},
           parameters};

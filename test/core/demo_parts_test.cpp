@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "bin_picking_perception/grasping/grasp_check.hpp"
+#include "bin_picking_perception/grasping/grasp_proposal.hpp"
 #include "bin_picking_perception/grasping/gripper.hpp"
 #include "bin_picking_perception/model/mesh.hpp"
 #include "bin_picking_perception/model/models_info.hpp"
@@ -198,6 +200,18 @@ TEST_P(DemoPart, fingersCloseOnThePartAndMissItOnTheWay)
     EXPECT_NEAR(low, -grasp.width / 2, 0.001) << grasp.id;
     EXPECT_NEAR(high, grasp.width / 2, 0.001) << grasp.id;
   }
+}
+
+// With all that symmetry and tolerances allow, a part that lies anyhow can nearly always be taken from above.
+TEST_P(DemoPart, graspsHoldAndServeMostAttitudes)
+{
+  const Part part = load(GetParam());
+  const Gripper gripper = loadGripper(CONFIG + "grippers/ag95.yaml");
+  const GraspChecker checker(part.mesh, gripper);
+  for (const GraspDefinition& grasp : part.definition.grasps)
+    for (const auto& finding : checker.check(grasp).findings)
+      ADD_FAILURE() << grasp.id << ": " << finding.sentence;
+  EXPECT_GT(attitudeCoverage(expandGrasps(part.definition, 12), M_PI / 4), 0.9);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DemoPart, testing::ValuesIn(PARTS), [](const auto& test) { return test.param; });

@@ -181,7 +181,7 @@ TEST(PartFile, missingKeys)
   expectWords(loadingError(with("- id: top\n    position", "- position"), "15"), {"'id' is missing"});
   expectWords(loadingError(with("    width: 0.035\n", ""), "15"), {"'width' is missing"});
   expectWords(loadingError(with("    closing: [0, 1, 0]\n", ""), "15"), {"'closing' is missing"});
-  expectWords(loadingError(with("    rpy_deg: [90, 0, 90]\n", ""), "25"),
+  expectWords(loadingError(with("    rpy_deg: [90, 0, 90]\n", ""), "27"),
               {"either 'approach' and 'closing', or 'rpy_deg'"});
 }
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "bin_picking_perception/common/error.hpp"
-#include "grasp_checks.hpp"
+#include "candidate_checks.hpp"
 #include "grasp_ranking.hpp"
 
 namespace bin_picking

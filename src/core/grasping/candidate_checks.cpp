@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
-#include "grasp_checks.hpp"
+#include "candidate_checks.hpp"
 
 #include <cmath>
 #include <iomanip>
