@@ -112,16 +112,14 @@ void MarkerMaker::addGrasp(const bin_picking::Grasp& grasp, const OutputFrame& o
   arrow.color = toColor({0.1f, 0.9f, 0.9f}, 1.0f);
   markers.markers.push_back(arrow);
 
-  for (std::size_t i = 0; i < gripper_.boxes.size(); ++i)
+  // As it arrives: open, where the flange is when it holds.
+  const Pose T_output_tool0 =
+      output.T_output_camera * grasp.T_camera_grasp * gripper_.T_tool0_tip(grasp.width).inverse();
+  for (std::size_t i = 0; i < gripper_.bodies.size(); ++i)
   {
-    const bin_picking::GripperBox& box = gripper_.boxes[i];
-    Pose T_tip_box = Pose::Identity();
-    T_tip_box.translation() = box.center + Eigen::Vector3d(0.0, box.finger * grasp.opening / 2, 0.0);
-    Marker marker = makeMarker(output.header, "gripper", i, Marker::CUBE);
-    marker.pose = toPoseMessage(output.T_output_camera * grasp.T_camera_grasp * T_tip_box);
-    marker.scale.x = box.size.x();
-    marker.scale.y = box.size.y();
-    marker.scale.z = box.size.z();
+    Marker marker = makeMarker(output.header, "gripper", i, Marker::TRIANGLE_LIST);
+    marker.pose = toPoseMessage(T_output_tool0);
+    addTriangles(bin_picking::toMesh(gripper_.bodyAt(i, grasp.opening)), marker);
     marker.color = toColor({0.2f, 0.7f, 0.9f}, 0.5f);
     markers.markers.push_back(marker);
   }
