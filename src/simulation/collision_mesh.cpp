@@ -21,8 +21,8 @@ std::vector<Triangle> trianglesOf(const TriangleMesh& mesh)
   std::vector<Triangle> triangles;
   triangles.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles)
-    triangles.push_back({mesh.vertices[t[0]].cast<double>(), mesh.vertices[t[1]].cast<double>(),
-                         mesh.vertices[t[2]].cast<double>()});
+    triangles.push_back(
+        {mesh.vertices[t[0]].cast<double>(), mesh.vertices[t[1]].cast<double>(), mesh.vertices[t[2]].cast<double>()});
   return triangles;
 }
 

@@ -124,8 +124,7 @@ private:
 
   bool approachCollides()
   {
-    const Eigen::Vector3d motion =
-        path_.T_bin_tool0_grasp.translation() - path_.T_bin_tool0_pre_grasp.translation();
+    const Eigen::Vector3d motion = path_.T_bin_tool0_grasp.translation() - path_.T_bin_tool0_pre_grasp.translation();
     const GripperWay way{path_.T_bin_tool0_pre_grasp, motion, path_.opening};
     // The lip is pressed on the part, and is soft.
     const bool may_touch = gripper_.kind == Gripper::Kind::Suction;
@@ -141,8 +140,8 @@ private:
   bool closes()
   {
     const bool is_suction = gripper_.kind == Gripper::Kind::Suction;
-    const Closing closing = is_suction ? seal(scene_, gripper_, path_, parameters_)
-                                       : closeFingers(scene_, gripper_, path_, parameters_);
+    const Closing closing =
+        is_suction ? seal(scene_, gripper_, path_, parameters_) : closeFingers(scene_, gripper_, path_, parameters_);
     verdict_.final_opening = closing.opening;
     verdict_.offset = closing.shift;
     if (closing.touch)
@@ -161,10 +160,9 @@ private:
   {
     const Eigen::Vector3d motion = path_.T_bin_tool0_retreat.translation() - path_.T_bin_tool0_grasp.translation();
     const GripperWay way{path_.T_bin_tool0_grasp, motion, verdict_.final_opening};
-    const auto gripper = firstTouch(scene_, gripper_, way,
-                                    [this](std::size_t, std::size_t mesh) { return scene_.isTarget(mesh); });
-    const Eigen::Vector3d shift =
-        verdict_.offset * (path_.T_bin_tool0_grasp.linear() * gripper_.R_tool0_tip.col(1));
+    const auto gripper =
+        firstTouch(scene_, gripper_, way, [this](std::size_t, std::size_t mesh) { return scene_.isTarget(mesh); });
+    const Eigen::Vector3d shift = verdict_.offset * (path_.T_bin_tool0_grasp.linear() * gripper_.R_tool0_tip.col(1));
     const auto held = firstTouchOfHeld(scene_, shift, motion, parameters_);
     const auto where = [&](double time) {
       return "on the retreat, " + millimetres(time * motion.norm()) + " after the grasp";
@@ -180,9 +178,9 @@ private:
   {
     verdict_.outcome = GripVerdict::Outcome::Collision;
     verdict_.stage = stage;
-    verdict_.obstacle = scene_.isTarget(mesh)             ? GripObstacle::Target
+    verdict_.obstacle = scene_.isTarget(mesh)          ? GripObstacle::Target
                         : scene_.meshes[mesh].isPart() ? GripObstacle::Part
-                                                          : GripObstacle::Bin;
+                                                       : GripObstacle::Bin;
     verdict_.obstacle_name = scene_.meshes[mesh].name;
     verdict_.body = body;
     verdict_.depth = depth;
@@ -255,8 +253,7 @@ GripJudge::GripJudge(const std::vector<CellPart>& parts, const Bin& bin, double 
   impl_ = std::move(impl);
 }
 
-GripJudge::GripJudge(const VirtualCell& cell)
-    : GripJudge(cell.parts(), cell.bin(), cell.parameters().layout.table_size)
+GripJudge::GripJudge(const VirtualCell& cell) : GripJudge(cell.parts(), cell.bin(), cell.parameters().layout.table_size)
 {}
 
 GripJudge::~GripJudge() = default;

@@ -73,9 +73,9 @@ struct GripVerdict
   // Of a collision.
   GripStage stage = GripStage::Approach;
   GripObstacle obstacle = GripObstacle::None;
-  std::string body;         ///< of the gripper, or "held part"
+  std::string body;           ///< of the gripper, or "held part"
   std::string obstacle_name;  ///< "wall at +x", "part 3 (three_way_tube)"
-  double depth = 0;         ///< how deep they would reach into each other on the whole way, metres; at most 0.02
+  double depth = 0;           ///< how deep they would reach into each other on the whole way, metres; at most 0.02
 };
 
 const char* toString(GripVerdict::Outcome outcome);

@@ -18,7 +18,7 @@ double squaredDistanceToSegment(const Eigen::Vector3d& p, const Eigen::Vector3d&
 }  // namespace
 
 double squaredDistanceToTriangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                       const Eigen::Vector3d& c)
+                                 const Eigen::Vector3d& c)
 {
   const Eigen::Vector3d normal = (b - a).cross(c - a);
   const bool over = (b - a).cross(p - a).dot(normal) >= 0 && (c - b).cross(p - b).dot(normal) >= 0 &&
