@@ -63,12 +63,12 @@ std::vector<Eigen::Vector3d> pointsOf(const TriangleMesh& mesh, const std::vecto
 }
 }  // namespace
 
-CollisionMesh::CollisionMesh(std::shared_ptr<const TriangleMesh> mesh)
+CollisionMesh::CollisionMesh(std::shared_ptr<const TriangleMesh> mesh, Surface surface)
     : mesh_(std::move(mesh)),
       solid_(*mesh_),
       triangles_(trianglesOf(*mesh_)),
       tree_(boxesOf(triangles_)),
-      surface_(pointsOf(*mesh_, triangles_)),
+      surface_(surface == Surface::Sampled ? pointsOf(*mesh_, triangles_) : std::vector<Eigen::Vector3d>{}),
       surface_tree_(boxesOf(surface_))
 {}
 

@@ -18,7 +18,14 @@ namespace bin_picking::simulation
 class CollisionMesh
 {
 public:
-  explicit CollisionMesh(std::shared_ptr<const TriangleMesh> mesh);
+  /// Of the points of the surface.
+  enum class Surface
+  {
+    Sampled,
+    Left  ///< there are none: for what never moves
+  };
+
+  explicit CollisionMesh(std::shared_ptr<const TriangleMesh> mesh, Surface surface = Surface::Sampled);
 
   const std::vector<Triangle>& triangles() const { return triangles_; }
   const BoxTree& tree() const { return tree_; }  ///< of the triangles

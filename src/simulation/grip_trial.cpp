@@ -37,7 +37,7 @@ std::vector<BinSide> makeSides(const Bin& bin, double table_size)
   const Eigen::Vector3d outer = inner + Eigen::Vector3d(t, t, 0);
   std::vector<BinSide> sides;
   const auto add = [&sides](const char* name, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-    sides.push_back({name, CollisionMesh(boxMesh(low, high))});
+    sides.push_back({name, CollisionMesh(boxMesh(low, high), CollisionMesh::Surface::Left)});
   };
   add("floor", {-outer.x(), -outer.y(), -t}, {outer.x(), outer.y(), 0});
   add("wall at +x", {inner.x(), -outer.y(), 0}, outer);

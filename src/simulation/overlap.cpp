@@ -44,9 +44,9 @@ double OverlapShape::depth(const Eigen::Vector3d& point) const
     return 0;
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& t : mesh_->triangles)
-    nearest =
-        std::min(nearest, squaredDistanceToTriangle(point, mesh_->vertices[t[0]].cast<double>(),
-                                          mesh_->vertices[t[1]].cast<double>(), mesh_->vertices[t[2]].cast<double>()));
+    nearest = std::min(
+        nearest, squaredDistanceToTriangle(point, mesh_->vertices[t[0]].cast<double>(),
+                                           mesh_->vertices[t[1]].cast<double>(), mesh_->vertices[t[2]].cast<double>()));
   return std::sqrt(nearest);
 }
 

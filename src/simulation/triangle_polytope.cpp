@@ -47,7 +47,7 @@ bool cutToAxis(TimeSpan& span, const ConvexBody& body, const Eigen::Vector3d& mo
   const double speed = axis.dot(motion);
   if (std::abs(speed) < MIN_SPEED)
     return to_first_touch < 0 && to_last_touch > 0;
-  const auto [begin, end] = std::minmax(to_first_touch / speed, to_last_touch / speed);
+  const auto [begin, end] = std::minmax({to_first_touch / speed, to_last_touch / speed});
   if (to_first_touch > to_last_touch)  // both are too thin along this axis
     return false;
   span.begin = std::max(span.begin, begin);
