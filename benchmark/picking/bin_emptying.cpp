@@ -99,7 +99,8 @@ public:
   Emptying run()
   {
     int fruitless = 0;
-    while (!cell_.bodies().empty() && fruitless < place_.settings.max_fruitless && !isAtLimit())
+    while (!cell_.bodies().empty() && fruitless < place_.settings.max_fruitless &&
+           failures_ < place_.settings.max_failures && !isAtLimit())
       fruitless = oneCloud() ? 0 : fruitless + 1;
     if (cell_.bodies().empty())
       result_.left.clear();
@@ -172,7 +173,9 @@ private:
                                      place_.settings.grip);
     result_.judging_seconds.push_back(clock.seconds());
     attempt.called_free = vouchedAgainst(attempt.verdict, checked);
-    if (attempt.verdict.outcome == GripVerdict::Outcome::Taken)
+    const bool is_taken = attempt.verdict.outcome == GripVerdict::Outcome::Taken;
+    failures_ = is_taken ? 0 : failures_ + 1;
+    if (is_taken)
       cell_.remove(attempt.verdict.id);
     else
       avoided_.add(middleInBin(detection));
@@ -208,6 +211,7 @@ private:
   AvoidedPlaces avoided_;
   Emptying result_;
   int clouds_ = 0;
+  int failures_ = 0;  ///< in a row
 };
 }  // namespace
 

@@ -45,6 +45,7 @@ struct Emptying
 struct EmptyingSettings
 {
   int max_fruitless = 4;  ///< clouds in a row without an allowed grasp
+  int max_failures = 10;  ///< attempts in a row that fail, after which the bin is given up
   int max_picks = 0;      ///< attempts in one bin; 0: no limit
   bool truth = false;     ///< detections are replaced by the true poses
   simulation::GripTrialParameters grip;
@@ -66,7 +67,8 @@ Emptying emptyBin(simulation::VirtualCell& cell, const std::vector<int>& counts,
 std::optional<std::size_t> trueInstance(const Detection& detection, const simulation::CellScan& scan,
                                         const simulation::VirtualCell& cell, const Detector& detector);
 
-/// Why the parts of this scan were not taken: "not detected" or the causes that ruled out most grasps.
+/// Why the parts of this scan were not taken: "not_detected"; "allowed", where a grasp is still offered; else the cause
+/// that ruled out most of their grasps.
 std::map<std::string, int> leftovers(const simulation::CellScan& scan, const simulation::VirtualCell& cell,
                                      const Detector& detector, const DetectionResult& result, const GraspPlan& plan);
 }  // namespace bin_picking::picking

@@ -11,16 +11,21 @@ namespace
 {
 constexpr double NEAR = 0.025;  // metres between the middles of a detection and the part that it stands for
 
-/// The cause that ruled out most grasps of these detections; empty: they have none.
-std::string mainCause(const GraspPlan& plan, const std::set<std::size_t>& detections)
+/// Why none of these detections' grasps is made.
+std::string causeFor(const GraspPlan& plan, const std::set<std::size_t>& detections)
 {
+  if (detections.empty())
+    return "not_detected";
+  if (std::any_of(plan.grasps.begin(), plan.grasps.end(),
+                  [&](const PlannedGrasp& grasp) { return detections.count(grasp.detection) > 0; }))
+    return "allowed";
   std::map<std::string, int> counts;
   for (const RejectedGrasp& grasp : plan.rejected)
     if (detections.count(grasp.detection))
       ++counts[grasp.cause];
   const auto most =
       std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most == counts.end() ? "" : most->first;
+  return most == counts.end() ? "no_grasps" : most->first;
 }
 }  // namespace
 
@@ -54,10 +59,7 @@ std::map<std::string, int> leftovers(const simulation::CellScan& scan, const sim
       detections[*instance].insert(d);
   std::map<std::string, int> causes;
   for (const std::set<std::size_t>& found : detections)
-  {
-    const std::string cause = mainCause(plan, found);
-    ++causes[found.empty() ? "not_detected" : cause.empty() ? "failed_before" : cause];
-  }
+    ++causes[causeFor(plan, found)];
   return causes;
 }
 }  // namespace bin_picking::picking

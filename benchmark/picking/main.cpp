@@ -36,6 +36,7 @@ Syntax syntax()
            {"--count", "N", Values::One, "parts of each kind in a bin (default 25)"},
            {"--seeds", "A..B", Values::One, "one bin for each (default 1..4)"},
            {"--picks", "N", Values::One, "stop a kind after so many attempts (default: when all its bins are done)"},
+           {"--failures", "N", Values::One, "give up a bin after so many failures in a row (default 10)"},
            {"--sensor", "NAME", Values::One, "structured_light (default), stereo or ideal"},
            {"--preset", "NAME", Values::One, "of the detector: paper, fast (default) or accurate"},
            {"--truth", "", Values::None, "true poses in place of detections: only grasp planning can fail"},
@@ -87,6 +88,7 @@ Bench benchFrom(const Arguments& arguments)
   if (arguments.has("--set"))
     applyAssignments(arguments, visitor(bench.grasps));
   bench.settings.truth = arguments.has("--truth");
+  bench.settings.max_failures = parseInteger(arguments.value("--failures", "10"), "--failures", 1, 1000000);
   bench.gripper = loadGripper(arguments.value("--gripper"));
   bench.robot = arguments.value("--robot");
   bench.models = arguments.value("--models", "picking_models");
@@ -104,6 +106,16 @@ std::shared_ptr<const TrainedModel> modelOf(const PartDefinition& part, const Be
   std::string note;
   return loadOrTrain(part, TrainingParameters{}, (fs::path(bench.models) / (part.name + ".model")).string(),
                      Executor(bench.threads), note);
+}
+
+/// One line, so that a long run can be followed.
+std::string summary(const Emptying& bin)
+{
+  const auto taken = std::count_if(bin.attempts.begin(), bin.attempts.end(), [](const Attempt& attempt) {
+    return attempt.verdict.outcome == simulation::GripVerdict::Outcome::Taken;
+  });
+  return std::to_string(taken) + " of " + std::to_string(bin.filled) + " parts taken in " +
+         std::to_string(bin.attempts.size()) + " attempts";
 }
 
 /// All bins with these parts in them.
@@ -131,6 +143,8 @@ PartStudy emptyBins(const std::string& name, const std::vector<PartDefinition>& 
     study.bins.push_back(emptyBin(cell, std::vector<int>(parts.size(), bench.count), static_cast<std::uint32_t>(seed),
                                   {detector, setup, settings}));
     attempts += static_cast<int>(study.bins.back().attempts.size());
+    progress.finish();
+    std::cerr << name << ", bin " << seed << ": " << summary(study.bins.back()) << "\n";
   }
   return study;
 }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "cell_requests.hpp"
 #include "grip_answer.hpp"
 #include "pose_conversion.hpp"
 #include "return_code.hpp"
@@ -22,24 +23,6 @@ namespace
 struct Stopped
 {
 };
-
-void checkRequest(const bin_picking_perception::TakePart::Request& request)
-{
-  using Request = bin_picking_perception::TakePart::Request;
-  if (request.select != Request::BY_ID && request.select != Request::BY_POSE)
-    throw RequestError(ReturnCode::INVALID_ARGUMENT,
-                       "select is " + std::to_string(request.select) + "; it must be BY_ID (0) or BY_POSE (1).");
-  if (!std::isfinite(request.tolerance) || request.tolerance < 0)
-    throw RequestError(ReturnCode::INVALID_ARGUMENT, "tolerance is " + std::to_string(request.tolerance) +
-                                                         " m; it must not be negative; 0 means the parameter.");
-}
-
-void checkRequest(const bin_picking_perception::Grip::Request& request)
-{
-  if (!std::isfinite(request.opening) || !std::isfinite(request.width))
-    throw RequestError(ReturnCode::INVALID_ARGUMENT, "opening is " + std::to_string(request.opening) + " m and width " +
-                                                         std::to_string(request.width) + " m; both must be finite.");
-}
 }  // namespace
 
 VirtualCellNode::VirtualCellNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh)
