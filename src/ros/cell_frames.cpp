@@ -2,24 +2,39 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "cell_frames.hpp"
 
-#include <utility>
+#include "resource_path.hpp"
 
 namespace bin_picking_ros
 {
-CellFrames::CellFrames(const ros::NodeHandle& nh, Names names, std::optional<bin_picking::Bin> bin)
-    : names_(std::move(names)), bin_(std::move(bin)), lookup_(nh)
+namespace
+{
+std::optional<bin_picking::Bin> loadOptionalBin(const std::string& file)
+{
+  if (file.empty())
+    return std::nullopt;
+  return bin_picking::loadBin(resolveResource(file));
+}
+}  // namespace
+
+CellFrames::CellFrames(const ros::NodeHandle& nh, const NodeParameters& parameters)
+    : output_frame_(parameters.output_frame),
+      bin_frame_(parameters.bin_frame),
+      robot_base_frame_(parameters.robot.empty() ? "" : parameters.robot_base_frame),
+      tf_timeout_(parameters.tf_timeout),
+      bin_(loadOptionalBin(parameters.bin)),
+      lookup_(nh)
 {}
 
 bin_picking::Pose CellFrames::find(const std::string& target, const std::string& source, const ros::Time& stamp) const
 {
-  return lookup_.lookup(target, source, stamp, names_.tf_timeout);
+  return lookup_.lookup(target, source, stamp, tf_timeout_);
 }
 
 OutputFrame CellFrames::output(const std_msgs::Header& cloud, const std::string& frame) const
 {
   if (cloud.frame_id.empty())
     throw RequestError(ReturnCode::BAD_CLOUD, "The cloud has no frame_id, so that nobody knows where its points are.");
-  const std::string& wanted = frame.empty() ? names_.output : frame;
+  const std::string& wanted = frame.empty() ? output_frame_ : frame;
   OutputFrame output;
   output.header.stamp = cloud.stamp;
   output.header.frame_id = wanted.empty() ? cloud.frame_id : wanted;
@@ -30,16 +45,16 @@ OutputFrame CellFrames::output(const std_msgs::Header& cloud, const std::string&
 std::optional<bin_picking::Bin> CellFrames::bin(const std_msgs::Header& cloud) const
 {
   std::optional<bin_picking::Bin> bin = bin_;
-  if (bin && !names_.bin.empty())
-    bin->T_camera_bin = find(cloud.frame_id, names_.bin, cloud.stamp);
+  if (bin && !bin_frame_.empty())
+    bin->T_camera_bin = find(cloud.frame_id, bin_frame_, cloud.stamp);
   return bin;
 }
 
 std::optional<bin_picking::Pose> CellFrames::robotBase(const std_msgs::Header& cloud) const
 {
-  if (names_.robot_base.empty())
+  if (robot_base_frame_.empty())
     return std::nullopt;
-  return find(names_.robot_base, cloud.frame_id, cloud.stamp);
+  return find(robot_base_frame_, cloud.frame_id, cloud.stamp);
 }
 
 bin_picking::Pose CellFrames::fixedFrame(const std::optional<bin_picking::Bin>& bin,

@@ -10,6 +10,7 @@
 #include "bin_picking_perception/scene/bin.hpp"
 #include "frame_lookup.hpp"
 #include "message_conversion.hpp"
+#include "node_parameters.hpp"
 
 namespace bin_picking_ros
 {
@@ -17,15 +18,8 @@ namespace bin_picking_ros
 class CellFrames
 {
 public:
-  struct Names
-  {
-    std::string output;            ///< empty: that of the cloud
-    std::string bin;               ///< empty: the bin stays where its file says
-    std::string robot_base;        ///< empty: there is no robot
-    double tf_timeout = 0.5;       ///< seconds
-  };
-
-  CellFrames(const ros::NodeHandle& nh, Names names, std::optional<bin_picking::Bin> bin);
+  /// \throws bin_picking::Error the bin's file is wrong
+  CellFrames(const ros::NodeHandle& nh, const NodeParameters& parameters);
 
   /// \param frame empty: that of the node \throws RequestError TF_*, BAD_TRANSFORM, BAD_CLOUD without frame
   OutputFrame output(const std_msgs::Header& cloud, const std::string& frame) const;
@@ -48,7 +42,10 @@ public:
 private:
   bin_picking::Pose find(const std::string& target, const std::string& source, const ros::Time& stamp) const;
 
-  Names names_;
+  const std::string output_frame_;
+  const std::string bin_frame_;
+  const std::string robot_base_frame_;  ///< empty: there is no robot
+  const double tf_timeout_;
   std::optional<bin_picking::Bin> bin_;
   FrameLookup lookup_;
 };

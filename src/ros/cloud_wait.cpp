@@ -21,20 +21,20 @@ std::string secondsText(double seconds)
 
 PointCloud2ConstPtr waitForNew(const CloudBuffer& clouds, const CloudWish& wish)
 {
-  const auto until =
-      wish.start + std::chrono::duration_cast<CloudBuffer::Clock::duration>(std::chrono::duration<double>(wish.seconds));
+  const auto until = wish.start + std::chrono::duration_cast<CloudBuffer::Clock::duration>(
+                                      std::chrono::duration<double>(wish.seconds));
   if (PointCloud2ConstPtr cloud = clouds.waitForStamp(wish.called, until))
     return cloud;
   if (clouds.closed())
     throw RequestError(ReturnCode::NOT_READY, "The node is shutting down.");
   const PointCloud2ConstPtr latest = clouds.latest();
   if (!latest)
-    throw RequestError(ReturnCode::NO_CLOUD, "No cloud has come on " + wish.topic + " yet; " +
-                                                 secondsText(wish.seconds) + " were waited.");
-  throw RequestError(ReturnCode::NO_CLOUD,
-                     "No cloud exposed after the call came within " + secondsText(wish.seconds) +
-                         "; the newest is stamped " + secondsText(secondsBetween(latest->header.stamp, wish.called)) +
-                         " before the call.");
+    throw RequestError(ReturnCode::NO_CLOUD,
+                       "No cloud has come on " + wish.topic + " yet; " + secondsText(wish.seconds) + " were waited.");
+  throw RequestError(ReturnCode::NO_CLOUD, "No cloud exposed after the call came within " + secondsText(wish.seconds) +
+                                               "; the newest is stamped " +
+                                               secondsText(secondsBetween(latest->header.stamp, wish.called)) +
+                                               " before the call.");
 }
 
 PointCloud2ConstPtr takeLatest(const CloudBuffer& clouds, const CloudWish& wish)

@@ -11,10 +11,10 @@ namespace bin_picking_ros
 /// When a cloud is wanted, and how long it is waited for.
 struct CloudWish
 {
-  ros::Time called;                       ///< of the request
-  CloudBuffer::Clock::time_point start;   ///< the same moment
-  double seconds = 0;                     ///< WAIT_NEW: how long to wait; USE_LATEST: how old the cloud may be
-  std::string topic;                      ///< for messages
+  ros::Time called;                      ///< of the request
+  CloudBuffer::Clock::time_point start;  ///< the same moment
+  double seconds = 0;                    ///< WAIT_NEW: how long to wait; USE_LATEST: how old the cloud may be
+  std::string topic;                     ///< for messages
 };
 
 /// A cloud stamped at or after the call. \throws RequestError NO_CLOUD, NOT_READY (the buffer was closed)

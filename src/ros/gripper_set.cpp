@@ -11,13 +11,14 @@
 
 namespace bin_picking_ros
 {
-GripperSet GripperSet::load(const std::vector<std::string>& resources)
+GripperSet GripperSet::load(const std::string& resource, std::vector<std::string> others)
 {
+  others.insert(others.begin(), resource);
   std::vector<bin_picking::Gripper> grippers;
   std::set<std::string> files, names;
-  for (const std::string& resource : resources)
+  for (const std::string& entry : others)
   {
-    const std::string file = resolveResource(resource);
+    const std::string file = resolveResource(entry);
     if (!files.insert(file).second)
       continue;  // the default one may also be in the list
     grippers.push_back(bin_picking::loadGripper(file));
@@ -25,8 +26,6 @@ GripperSet GripperSet::load(const std::vector<std::string>& resources)
       throw bin_picking::ParameterError("Two of the grippers are named " + grippers.back().name + " (the second in " +
                                         file + "); names must differ, requests tell them apart by it.");
   }
-  if (grippers.empty())
-    throw bin_picking::ParameterError("There is no gripper; the parameter gripper must name its file.");
   return GripperSet(std::move(grippers));
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bin_picking_perception/grasping/gripper.hpp"
@@ -13,9 +14,9 @@ namespace bin_picking_ros
 class GripperSet
 {
 public:
-  /// \param resources files, the one that is meant where nobody says which first
-  /// \throws bin_picking::Error no file, a file is wrong, or two grippers have one name
-  static GripperSet load(const std::vector<std::string>& resources);
+  /// \param resource file of the one that is meant where nobody says which \param others further files
+  /// \throws bin_picking::Error a file is missing or wrong, or two grippers have one name
+  static GripperSet load(const std::string& resource, std::vector<std::string> others);
 
   /// \pre not empty, names differ
   explicit GripperSet(std::vector<bin_picking::Gripper> grippers) : grippers_(std::move(grippers)) {}

@@ -3,6 +3,7 @@
 #include "message_conversion.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -59,10 +60,20 @@ msgs::Detection toMessage(const bin_picking::Detection& detection, const OutputF
   return message;
 }
 
-msgs::Grasp toMessage(const bin_picking::Grasp& grasp, const OutputFrame& output)
+/// What nobody looked at is marked as such, never filled with a value that could pass for a result.
+void setUnchecked(msgs::Grasp& message)
+{
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  message.clearance = unknown;
+  message.contact.x = message.contact.y = message.contact.z = unknown;
+}
+
+msgs::Grasp toMessage(const bin_picking::Grasp& grasp, const std::string& gripper, const OutputFrame& output)
 {
   msgs::Grasp message;
   message.header = output.header;
+  message.uid = grasp.uid;
+  message.gripper = gripper;
   message.part = grasp.part;
   message.grasp_id = grasp.grasp_id;
   message.detection_index = static_cast<std::uint32_t>(grasp.detection_index);
@@ -78,6 +89,8 @@ msgs::Grasp toMessage(const bin_picking::Grasp& grasp, const OutputFrame& output
   message.tilt = grasp.tilt;
   message.bin_clearance = grasp.bin_clearance;
   message.quality = grasp.quality;
+  setUnchecked(message);
+  message.rejection = grasp.reason;
   return message;
 }
 
@@ -110,7 +123,7 @@ msgs::GraspArray toGraspArray(const PickResult& result, const OutputFrame& outpu
   msgs::GraspArray message;
   message.header = output.header;
   for (const bin_picking::Grasp& grasp : result.selection.grasps)
-    message.grasps.push_back(toMessage(grasp, output));
+    message.grasps.push_back(toMessage(grasp, result.gripper, output));
   return message;
 }
 
@@ -144,13 +157,47 @@ std::vector<msgs::RejectCount> countRejections(const PickResult& result)
   return messages;
 }
 
-msgs::GetBestGrasp::Response toResponse(const PickResult& result, const OutputFrame& output)
+std::string inWords(bin_picking::GraspRejection rejection)
+{
+  std::string words = bin_picking::toString(rejection);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+std::string summarize(const bin_picking::GraspSelection& selection)
+{
+  std::map<bin_picking::GraspRejection, std::size_t> counts;
+  for (const bin_picking::Grasp& grasp : selection.rejected)
+    ++counts[grasp.rejection];
+  std::vector<std::pair<std::string, std::size_t>> reasons;
+  for (const auto& [rejection, count] : counts)
+    reasons.emplace_back(inWords(rejection), count);
+  std::stable_sort(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  if (!selection.grasps.empty())
+    reasons.insert(reasons.begin(), {"allowed", selection.grasps.size()});
+
+  const std::size_t total = selection.grasps.size() + selection.rejected.size();
+  std::string text = std::to_string(total) + (total == 1 ? " grasp" : " grasps");
+  const char* separator = ": ";
+  for (const auto& [reason, count] : reasons)
+  {
+    text += separator + std::to_string(count) + " " + reason;
+    separator = ", ";
+  }
+  return text;
+}
+
+msgs::GetBestGrasp::Response toResponse(const PickResult& result, const OutputFrame& output, bool list_rejected)
 {
   msgs::GetBestGrasp::Response response;
   response.code = result.code;
   response.header = output.header;
   response.grasps = toGraspArray(result, output).grasps;
   response.detections = toDetectionArray(result, output).detections;
+  if (list_rejected)
+    for (const bin_picking::Grasp& grasp : result.selection.rejected)
+      response.rejected_grasps.push_back(toMessage(grasp, result.gripper, output));
+  response.summary = summarize(result.selection);
   response.rejected = countRejections(result);
   for (const bin_picking::StageTime& time : result.detection.timing)
   {

@@ -45,14 +45,15 @@ std::string PickMemory::nextAnswer()
   return run_ + "-" + std::to_string(++num_answers_);
 }
 
-void PickMemory::remember(std::vector<GivenGrasp> grasps)
+void PickMemory::remember(std::vector<GivenGrasp> grasps, Channel channel)
 {
   if (grasps.empty())
     return;  // an answer without grasps must not push out one that is being worked on
   const std::lock_guard<std::mutex> lock(mutex_);
-  answers_.push_back({std::move(grasps), {}});
-  while (answers_.size() > max_answers_)
-    answers_.pop_front();
+  std::deque<Answer>& answers = answers_[channel == Channel::Service ? 0 : 1];
+  answers.push_back({std::move(grasps), {}});
+  while (answers.size() > max_answers_)
+    answers.pop_front();
 }
 
 std::vector<std::optional<bin_picking::AvoidedPlace>> PickMemory::avoided(const std::vector<Eigen::Vector3d>& centers,
@@ -76,13 +77,14 @@ std::vector<bin_picking::AvoidedPlace> PickMemory::places(double now)
 
 PickMemory::Found PickMemory::find(const std::string& uid)
 {
-  for (auto answer = answers_.rbegin(); answer != answers_.rend(); ++answer)
-    for (GivenGrasp& grasp : answer->grasps)
-      if (grasp.uid == uid)
-        return {*answer, grasp};
+  for (std::deque<Answer>& answers : answers_)
+    for (auto answer = answers.rbegin(); answer != answers.rend(); ++answer)
+      for (GivenGrasp& grasp : answer->grasps)
+        if (grasp.uid == uid)
+          return {*answer, grasp};
   const bool of_this_run = uid.compare(0, run_.size() + 1, run_ + "-") == 0;
   throw RequestError(ReturnCode::GRASP_UNKNOWN,
-                     "The grasp \"" + uid + "\" is not among those of the last " + std::to_string(answers_.size()) +
+                     "The grasp \"" + uid + "\" is not among those of the last " + std::to_string(answers_[0].size()) +
                          " answers with grasps" +
                          (of_this_run ? "." : ", and its name is not one that was given out since the node started."));
 }

@@ -4,6 +4,7 @@
 
 #include <bin_picking_perception/ReportPick.h>
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -37,8 +38,16 @@ public:
   /// The beginning of the names of the next answer's grasps; grasp k is <this>-<k>.
   std::string nextAnswer();
 
-  /// Remembers an answer and forgets the oldest one.
-  void remember(std::vector<GivenGrasp> grasps);
+  /// How grasps were given out. Of either kind as many answers are remembered: continuous processing must not push out
+  /// the answer that a robot is working on.
+  enum class Channel
+  {
+    Service,
+    Topic
+  };
+
+  /// Remembers an answer and forgets the oldest one of its kind.
+  void remember(std::vector<GivenGrasp> grasps, Channel channel);
 
   /// For each of these middles of parts, the place that it is avoided for.
   std::vector<std::optional<bin_picking::AvoidedPlace>> avoided(const std::vector<Eigen::Vector3d>& centers,
@@ -71,6 +80,6 @@ private:
   const std::size_t max_answers_;
   const std::string run_;
   std::uint64_t num_answers_ = 0;
-  std::deque<Answer> answers_;  ///< newest last
+  std::array<std::deque<Answer>, 2> answers_;  ///< per channel, newest last
 };
 }  // namespace bin_picking_ros

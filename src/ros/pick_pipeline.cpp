@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "bin_picking_perception/common/parameters.hpp"
@@ -27,6 +29,41 @@ auto timed(const std::string& stage, std::vector<bin_picking::StageTime>& timing
   return result;
 }
 
+std::string describe(const bin_picking::AvoidedPlace& place)
+{
+  return std::string("The last attempt to take the part there ended as \"") + bin_picking::toString(place.outcome) +
+         "\"; it is avoided for " + std::to_string(std::lround(place.until - place.since)) + " s from then or until " +
+         std::to_string(place.picks_left) + " more picks have changed the pile (avoid).";
+}
+
+/// Allowed grasps of parts that are avoided become rejected ones, the first `max_grasps` of the others are kept.
+GraspSelection withoutAvoided(GraspSelection selection, const AvoidQuery& query,
+                              const std::vector<Eigen::Vector3d>& centers, int max_grasps)
+{
+  const auto places = query ? query(centers) : std::vector<std::optional<bin_picking::AvoidedPlace>>(centers.size());
+  GraspSelection kept;
+  kept.rejected = std::move(selection.rejected);
+  for (bin_picking::Grasp& grasp : selection.grasps)
+  {
+    if (const auto& place = places[grasp.detection_index])
+    {
+      grasp.rejection = bin_picking::GraspRejection::Avoided;
+      grasp.reason = describe(*place);
+      kept.rejected.push_back(std::move(grasp));
+    }
+    else if (kept.grasps.size() < static_cast<std::size_t>(max_grasps))
+      kept.grasps.push_back(std::move(grasp));
+  }
+  return kept;
+}
+
+bool anyAvoided(const GraspSelection& selection)
+{
+  return std::any_of(selection.rejected.begin(), selection.rejected.end(), [](const bin_picking::Grasp& grasp) {
+    return grasp.rejection == bin_picking::GraspRejection::Avoided;
+  });
+}
+
 ReturnCode judge(const DetectionResult& detection, const GraspSelection& selection)
 {
   const std::string grasps = "; " + std::to_string(selection.grasps.size()) + " grasps allowed, " +
@@ -44,7 +81,8 @@ ReturnCode judge(const DetectionResult& detection, const GraspSelection& selecti
     case DetectionCode::Ok:
       break;
   }
-  return makeReturnCode(ReturnCode::NO_PICKABLE, detection.message + grasps);
+  const bool only_avoided = anyAvoided(selection);
+  return makeReturnCode(only_avoided ? ReturnCode::ALL_AVOIDED : ReturnCode::NO_PICKABLE, detection.message + grasps);
 }
 }  // namespace
 
@@ -69,6 +107,19 @@ void PickPipeline::requireParts(const std::vector<std::string>& names) const
   }
 }
 
+GraspSelection PickPipeline::select(const PickResult& result, const PickRequest& request) const
+{
+  bin_picking::GraspParameters parameters = setup_.grasping;
+  int max_grasps = parameters.max_grasps;
+  if (request.max_grasps > 0)
+    max_grasps = static_cast<int>(std::min(request.max_grasps, static_cast<std::size_t>(max_grasps)));
+  parameters.max_grasps = std::numeric_limits<int>::max();  // cut after what is avoided has been taken out
+  auto selection =
+      bin_picking::selectGrasps(result.detection.detections, setup_.parts, setup_.grippers.find(request.gripper),
+                                result.bin ? &*result.bin : nullptr, parameters, request.accept_undetermined_turn);
+  return withoutAvoided(std::move(selection), request.avoided, result.centers, max_grasps);
+}
+
 PickResult PickPipeline::run(const sensor_msgs::PointCloud2& cloud, const PickRequest& request) const
 {
   requireParts(request.parts);
@@ -85,15 +136,12 @@ PickResult PickPipeline::run(const sensor_msgs::PointCloud2& cloud, const PickRe
   PickResult result;
   result.cloud_header = cloud.header;
   result.bin = request.bin;
+  result.gripper = setup_.grippers.find(request.gripper).name;
   result.detection = detector_.detect(points, query);
+  for (const bin_picking::Detection& detection : result.detection.detections)
+    result.centers.push_back(detection.T_camera_object * setup_.models.at(detection.model_index)->center);
   timing.insert(timing.end(), result.detection.timing.begin(), result.detection.timing.end());
-  bin_picking::GraspParameters grasping = setup_.grasping;
-  if (request.max_grasps > 0)
-    grasping.max_grasps = static_cast<int>(std::min(request.max_grasps, static_cast<std::size_t>(grasping.max_grasps)));
-  result.selection = timed("grasp selection", timing, [&] {
-    return bin_picking::selectGrasps(result.detection.detections, setup_.parts, setup_.gripper,
-                                     request.bin ? &*request.bin : nullptr, grasping, request.accept_undetermined_turn);
-  });
+  result.selection = timed("grasp selection", timing, [&] { return select(result, request); });
   result.detection.timing = std::move(timing);
   result.detection.total_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.code = judge(result.detection, result.selection);

@@ -39,7 +39,8 @@ enum class GraspRejection
   TiltTooLarge,
   OpeningTooSmall,  ///< the gripper cannot open as far as the grasp asks
   BinWallCollision,
-  BinFloorCollision
+  BinFloorCollision,
+  Avoided  ///< the last attempt on the part failed, see AvoidList
 };
 
 /// "none", "matching_rate_too_low", ... for logs and messages.
@@ -48,6 +49,7 @@ const char* toString(GraspRejection rejection);
 /// A grasp of one detection. All poses are of the frame between the finger tips: Z = approach, Y = closing.
 struct Grasp
 {
+  std::string uid;  ///< given by who offers the grasp to others; empty here
   std::string part;
   std::string grasp_id;
   std::size_t detection_index = 0;  ///< into DetectionResult::detections

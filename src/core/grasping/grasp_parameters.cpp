@@ -50,6 +50,8 @@ const char* toString(GraspRejection rejection)
       return "bin_wall_collision";
     case GraspRejection::BinFloorCollision:
       return "bin_floor_collision";
+    case GraspRejection::Avoided:
+      return "avoided";
   }
   return "unknown";
 }
