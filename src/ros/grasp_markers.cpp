@@ -28,19 +28,15 @@ Marker arrow(const bin_picking::Grasp& grasp, const OutputFrame& output, const c
   return marker;
 }
 
+/// As it arrives: open, where the flange is when it holds.
 void addGripper(const bin_picking::Grasp& grasp, const bin_picking::Gripper& gripper, const OutputFrame& output,
                 MarkerArray& markers)
 {
-  for (std::size_t i = 0; i < gripper.boxes.size(); ++i)
+  for (std::size_t i = 0; i < gripper.bodies.size(); ++i)
   {
-    const bin_picking::GripperBox& box = gripper.boxes[i];
-    Pose T_tip_box = Pose::Identity();
-    T_tip_box.translation() = box.center + Eigen::Vector3d(0.0, box.finger * grasp.opening / 2, 0.0);
-    Marker marker = makeMarker(output.header, "gripper", i, Marker::CUBE);
-    marker.pose = toPoseMessage(output.T_output_camera * grasp.T_camera_grasp * T_tip_box);
-    marker.scale.x = box.size.x();
-    marker.scale.y = box.size.y();
-    marker.scale.z = box.size.z();
+    Marker marker = makeMarker(output.header, "gripper", i, Marker::TRIANGLE_LIST);
+    marker.pose = toPoseMessage(output.T_output_camera * grasp.T_camera_tool0_grasp);
+    addTriangles(bin_picking::toMesh(gripper.bodyAt(i, grasp.opening)), marker);
     marker.color = toColor({0.2f, 0.7f, 0.9f}, 0.5f);
     markers.markers.push_back(marker);
   }

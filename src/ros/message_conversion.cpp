@@ -60,6 +60,17 @@ msgs::Detection toMessage(const bin_picking::Detection& detection, const OutputF
   return message;
 }
 
+/// Of a grasp that the gripper cannot make, there is no pose of the flange.
+geometry_msgs::Pose poseOrNan(const bin_picking::Pose& pose)
+{
+  if (pose.matrix().allFinite())
+    return toPoseMessage(pose);
+  geometry_msgs::Pose message;
+  message.position.x = message.position.y = message.position.z = std::numeric_limits<double>::quiet_NaN();
+  message.orientation.x = message.orientation.y = message.orientation.z = message.orientation.w = message.position.x;
+  return message;
+}
+
 /// What nobody looked at is marked as such, never filled with a value that could pass for a result.
 void setUnchecked(msgs::Grasp& message)
 {
@@ -81,6 +92,9 @@ msgs::Grasp toMessage(const bin_picking::Grasp& grasp, const std::string& grippe
   message.pre_grasp = toPoseMessage(output.T_output_camera * grasp.T_camera_pre_grasp);
   message.grasp = toPoseMessage(output.T_output_camera * grasp.T_camera_grasp);
   message.retreat = toPoseMessage(output.T_output_camera * grasp.T_camera_retreat);
+  message.pre_grasp_tool0 = poseOrNan(output.T_output_camera * grasp.T_camera_tool0_pre_grasp);
+  message.grasp_tool0 = poseOrNan(output.T_output_camera * grasp.T_camera_tool0_grasp);
+  message.retreat_tool0 = poseOrNan(output.T_output_camera * grasp.T_camera_tool0_retreat);
   message.object_in_tip = toPoseMessage(grasp.T_tip_object);
   message.undetermined_turn = grasp.undetermined_turn;
   message.width = grasp.width;

@@ -146,14 +146,14 @@ TEST_P(DemoPart, noSymmetryIsForgotten)
   }
 }
 
-/// The points of the surface between the fingers, as the extent along the closing direction in the tip frame.
-std::pair<float, float> extentBetweenFingers(const std::vector<Eigen::Vector3f>& points_tip, const GripperBox& finger)
+/// The points of the surface that a finger meets when it moves along Y, as their extent along Y. Tip frame.
+std::pair<float, float> extentBetweenFingers(const std::vector<Eigen::Vector3f>& points_tip, const ConvexBody& finger)
 {
   std::pair<float, float> extent(std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity());
+  const ConvexBody path = swept(swept(finger, {0, 0.2, 0}), {0, -0.4, 0});
   for (const Eigen::Vector3f& p : points_tip)
   {
-    const Vector3d distance = (p.cast<double>() - finger.center).cwiseAbs();
-    if (distance.x() > finger.size.x() / 2 || distance.z() > finger.size.z() / 2)
+    if (signedDistance(path, p.cast<double>()) > 0)
       continue;
     extent.first = std::min(extent.first, p.y());
     extent.second = std::max(extent.second, p.y());
@@ -161,17 +161,18 @@ std::pair<float, float> extentBetweenFingers(const std::vector<Eigen::Vector3f>&
   return extent;
 }
 
-/// Whether the gripper, open, runs into the part on its straight way to the grasp.
-bool hitsOnTheWay(const std::vector<Eigen::Vector3f>& points_tip, const GripperBox& box, const GraspDefinition& grasp)
+/// A body of the gripper in the frame of the tip when it holds.
+ConvexBody bodyInTip(const Gripper& gripper, std::size_t body, double opening, double width)
 {
-  Vector3d center = box.center;
-  center.y() += box.finger * grasp.opening / 2;
-  const Vector3d low = center - box.size / 2;
-  const Vector3d high = center + box.size / 2;
-  return std::any_of(points_tip.begin(), points_tip.end(), [&](const Eigen::Vector3f& p) {
-    return p.x() > low.x() && p.x() < high.x() && p.y() > low.y() && p.y() < high.y() && p.z() < high.z() &&
-           p.z() + grasp.approach > low.z();
-  });
+  return transformed(gripper.bodyAt(body, opening), gripper.T_tool0_tip(width).inverse());
+}
+
+/// Whether the gripper, open, runs into the part on its straight way to the grasp.
+bool hitsOnTheWay(const std::vector<Eigen::Vector3f>& points_tip, const ConvexBody& body, const GraspDefinition& grasp)
+{
+  const ConvexBody path = swept(body, {0, 0, -grasp.approach});
+  return std::any_of(points_tip.begin(), points_tip.end(),
+                     [&](const Eigen::Vector3f& p) { return signedDistance(path, p.cast<double>()) < 0; });
 }
 
 TEST_P(DemoPart, fingersCloseOnThePartAndMissItOnTheWay)
@@ -179,18 +180,21 @@ TEST_P(DemoPart, fingersCloseOnThePartAndMissItOnTheWay)
   const Part part = load(GetParam());
   const Gripper gripper = loadGripper(CONFIG + "grippers/ag95.yaml");
   const auto finger =
-      std::find_if(gripper.boxes.begin(), gripper.boxes.end(), [](const auto& b) { return b.finger == 1; });
-  ASSERT_NE(finger, gripper.boxes.end());
+      std::find_if(gripper.bodies.begin(), gripper.bodies.end(), [](const auto& b) { return b.touches_part; });
+  ASSERT_NE(finger, gripper.bodies.end());
+  const auto finger_index = static_cast<std::size_t>(finger - gripper.bodies.begin());
   const OrientedPoints samples = sampleSurface(part.mesh, 0.0005, 1);
   EXPECT_GE(part.definition.grasps.size(), 3u);
   for (const GraspDefinition& grasp : part.definition.grasps)
   {
     const auto points_tip = transformed(samples, grasp.T_object_tip.inverse()).points;
     EXPECT_LE(grasp.opening, gripper.max_opening) << grasp.id;
-    for (const GripperBox& box : gripper.boxes)
-      EXPECT_FALSE(hitsOnTheWay(points_tip, box, grasp)) << grasp.id << ": " << box.name;
+    for (std::size_t i = 0; i < gripper.bodies.size(); ++i)
+      EXPECT_FALSE(hitsOnTheWay(points_tip, bodyInTip(gripper, i, grasp.opening, grasp.width), grasp))
+          << grasp.id << ": " << gripper.bodies[i].name;
     // The width is written in whole millimetres; with a finger off by more than that the part would be pushed aside.
-    const auto [low, high] = extentBetweenFingers(points_tip, *finger);
+    const auto [low, high] =
+        extentBetweenFingers(points_tip, bodyInTip(gripper, finger_index, grasp.width, grasp.width));
     EXPECT_NEAR(low, -grasp.width / 2, 0.001) << grasp.id;
     EXPECT_NEAR(high, grasp.width / 2, 0.001) << grasp.id;
   }

@@ -20,15 +20,26 @@ using Eigen::Vector3d;
 
 constexpr double DEGREE = M_PI / 180;
 
+GripperBody boxBody(const std::string& name, const Vector3d& center_tip, const Vector3d& size, int finger)
+{
+  GripperBody body;
+  body.name = name;
+  body.shape = makeBox(center_tip + 0.2 * Vector3d::UnitZ(), size);  // the tip is 0.2 m in front of the flange
+  body.placements = {{0, {0, 0, 0}, 0}, {0.095, {0, finger * 0.0475, 0}, 0}};
+  body.touches_part = finger != 0;
+  return body;
+}
+
 /// Palm 100 mm above the tips and two fingers of 10 x 6 x 80 mm that end 10 mm beyond them.
 Gripper twoFingerGripper()
 {
   Gripper gripper;
   gripper.name = "two_finger";
   gripper.max_opening = 0.095;
-  gripper.boxes = {{"palm", {0, 0, -0.12}, {0.06, 0.12, 0.04}, 0},
-                   {"finger +", {0, 0.003, -0.03}, {0.01, 0.006, 0.08}, 1},
-                   {"finger -", {0, -0.003, -0.03}, {0.01, 0.006, 0.08}, -1}};
+  gripper.tip_heights = {{0, 0.2}};
+  gripper.bodies = {boxBody("palm", {0, 0, -0.12}, {0.06, 0.12, 0.04}, 0),
+                    boxBody("finger +", {0, 0.003, -0.03}, {0.01, 0.006, 0.08}, 1),
+                    boxBody("finger -", {0, -0.003, -0.03}, {0.01, 0.006, 0.08}, -1)};
   return gripper;
 }
 
@@ -279,6 +290,28 @@ TEST(GraspSelection, FingersMustNotReachTheFloor)
   EXPECT_NE(low.rejected[0].reason.find("2.5 mm"), std::string::npos) << low.rejected[0].reason;
 }
 
+TEST(GraspSelection, FingersOnALinkageAreWhereTheyAreWhenOpenOnTheWayIn)
+{
+  // Opened to 50 mm the fingers reach 3 mm farther than when they hold at 30 mm: the flange is where the tip is right
+  // for holding, so that they would come 3 mm nearer to the floor than the grasp itself.
+  Gripper gripper = twoFingerGripper();
+  gripper.tip_heights = {{0, 0.2}, {0.03, 0.2}, {0.05, 0.203}, {0.095, 0.203}};
+  for (GripperBody& body : gripper.bodies)
+    if (body.touches_part)
+    {
+      const double side = body.placements[1].offset.y() > 0 ? 1 : -1;
+      body.placements = {{0, {0, 0, 0}, 0},
+                         {0.03, {0, side * 0.015, 0}, 0},
+                         {0.05, {0, side * 0.025, 0.003}, 0},
+                         {0.095, {0, side * 0.0475, 0.003}, 0}};
+    }
+  const Bin bin = binBelowCamera();
+  const GraspSelection selection =
+      selectGrasps({detectionAt({0, 0, 0.05})}, {partWith({graspFromAbove("top")})}, gripper, &bin, {});
+  ASSERT_EQ(selection.grasps.size(), 1u);
+  EXPECT_NEAR(selection.grasps[0].bin_clearance, 0.037, 1e-9);
+}
+
 TEST(GraspSelection, TheWayInIsCheckedAndNotOnlyItsEnds)
 {
   // Tilted by 60 degrees and from far away the gripper would come in through the wall: the pre-grasp is free outside of
@@ -286,7 +319,7 @@ TEST(GraspSelection, TheWayInIsCheckedAndNotOnlyItsEnds)
   Bin bin = binBelowCamera();
   bin.inner_size.z() = 0.3;
   Gripper gripper = twoFingerGripper();
-  gripper.boxes = {{"needle", {0, 0, -0.01}, {0.002, 0.002, 0.02}, 0}};
+  gripper.bodies = {boxBody("needle", {0, 0, -0.01}, {0.002, 0.002, 0.02}, 0)};
   PartDefinition part = partWith({graspFromAbove("side")});
   part.grasps[0].approach = 0.3;
   GraspParameters parameters;
@@ -440,10 +473,10 @@ TEST(GraspSelection, NothingKnownNothingOffered)
   EXPECT_TRUE(selection.rejected.empty());
 }
 
-TEST(GraspSelection, AGripperWithoutBoxesCannotBeChecked)
+TEST(GraspSelection, AGripperWithoutBodiesCannotBeChecked)
 {
   Gripper gripper = twoFingerGripper();
-  gripper.boxes.clear();
+  gripper.bodies.clear();
   const Bin bin = binBelowCamera();
   const std::vector<Detection> detections = {detectionAt({0, 0, 0.06})};
   const std::vector<PartDefinition> parts = {partWith({graspFromAbove("top")})};

@@ -191,7 +191,14 @@ TEST(Markers, ShowEveryDetectionInItsColour)
   model.mesh.vertices = {{0, 0, 0}, {0.05f, 0, 0}, {0, 0.05f, 0}, {0, 0, 0.05f}};
   model.mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
   bin_picking::Gripper gripper;
-  gripper.boxes = {{"palm", {0, 0, -0.1}, {0.1, 0.1, 0.05}, 0}, {"left", {0, 0.01, 0}, {0.02, 0.02, 0.04}, 1}};
+  gripper.max_opening = 0.1;
+  gripper.tip_heights = {{0.0, 0.2}};
+  bin_picking::GripperBody palm;
+  palm.shape = bin_picking::makeBox({0, 0, 0.1}, {0.1, 0.1, 0.05});
+  bin_picking::GripperBody finger;
+  finger.shape = bin_picking::makeBox({0, 0.01, 0.2}, {0.02, 0.02, 0.04});
+  finger.placements = {{0, {0, 0, 0}, 0}, {0.1, {0, 0.05, 0}, 0}};
+  gripper.bodies = {palm, finger};
   const MarkerMaker maker({std::make_shared<const bin_picking::TrainedModel>(model)}, gripper);
   const PickResult result = someResult();
   const auto markers = maker.make(result, someOutput()).markers;
@@ -218,9 +225,14 @@ TEST(Markers, ShowEveryDetectionInItsColour)
     if (markers[i].ns == "gripper" && markers[i].id == 1)
     {
       // The finger stands at its place for opening 0, moved by half the opening along Y of the tip frame.
-      const Pose expected = someOutput().T_output_camera * result.selection.grasps[0].T_camera_grasp;
-      const Eigen::Vector3d center = expected * Eigen::Vector3d(0, 0.01 + 0.025, 0);
-      EXPECT_TRUE(fromMessage(markers[i].pose).translation().isApprox(center, 1e-9));
+      const Pose T_output_tip = someOutput().T_output_camera * result.selection.grasps[0].T_camera_grasp;
+      ASSERT_EQ(markers[i].points.size(), 36u);  // twelve triangles
+      const Pose T_tip_marker = T_output_tip.inverse() * fromMessage(markers[i].pose);
+      for (const auto& p : markers[i].points)
+      {
+        const Eigen::Vector3d corner = T_tip_marker * Eigen::Vector3d(p.x, p.y, p.z) - Eigen::Vector3d(0, 0.035, 0);
+        EXPECT_TRUE(corner.cwiseAbs().isApprox(Eigen::Vector3d(0.01, 0.01, 0.02), 1e-6)) << corner.transpose();
+      }
     }
   }
   const std::map<std::string, int> expected = {{"parts", 2}, {"labels", 2}, {"rejected", 1},

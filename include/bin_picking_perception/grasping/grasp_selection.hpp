@@ -57,6 +57,9 @@ struct Grasp
   Pose T_camera_pre_grasp = Pose::Identity();
   Pose T_camera_grasp = Pose::Identity();
   Pose T_camera_retreat = Pose::Identity();
+  Pose T_camera_tool0_pre_grasp = Pose::Identity();  ///< the same motion of the robot's flange
+  Pose T_camera_tool0_grasp = Pose::Identity();
+  Pose T_camera_tool0_retreat = Pose::Identity();
   Pose T_tip_object = Pose::Identity();  ///< the part in the hand, for placing
   bool undetermined_turn = false;        ///< up to the turn that the detection leaves open
   double width = 0;                      ///< metres, when holding
@@ -81,7 +84,7 @@ struct GraspSelection
 /// is then listed once. \param parts definitions by name; a detection of a part without definition has no grasps \param
 /// bin nullptr: no wall check, tilt is measured against the camera's view direction \param accept_undetermined_turn
 /// also of parts whose turn about an axis is not known: they are checked at the pose that the detection states, one of
-/// those that the part may have \throws ParameterError a bin is given and the gripper has no boxes
+/// those that the part may have \throws ParameterError a bin is given and the gripper has no bodies
 GraspSelection selectGrasps(const std::vector<Detection>& detections, const std::vector<PartDefinition>& parts,
                             const Gripper& gripper, const Bin* bin, const GraspParameters& parameters,
                             bool accept_undetermined_turn = false);

@@ -168,6 +168,25 @@ std::vector<double> YamlMap::numbers(const std::string& key, std::size_t count, 
   return result;
 }
 
+std::vector<std::vector<double>> YamlMap::rows(const std::string& key, std::size_t columns,
+                                               const std::string& unit) const
+{
+  const YAML::Node value = child(key);
+  const std::string wanted = "'" + key + "' must be a list of rows of " + std::to_string(columns) + " numbers each";
+  if (!value.IsSequence())
+    fail(key, wanted);
+  std::vector<std::vector<double>> result;
+  for (const auto& row : value)
+  {
+    if (!row.IsSequence() || row.size() != columns)
+      failAt(path_, row.Mark(), wanted);
+    result.emplace_back();
+    for (const auto& entry : row)
+      result.back().push_back(quantity(entry, key, unit));
+  }
+  return result;
+}
+
 Eigen::Vector3d YamlMap::vector(const std::string& key, const std::string& unit) const
 {
   const std::vector<double> values = numbers(key, 3, unit);

@@ -32,6 +32,8 @@ public:
   double number(const std::string& key, const std::string& unit) const;
   double number(const std::string& key, const std::string& unit, double fallback) const;
   std::vector<double> numbers(const std::string& key, std::size_t count, const std::string& unit) const;
+  /// A list of rows, each of so many numbers.
+  std::vector<std::vector<double>> rows(const std::string& key, std::size_t columns, const std::string& unit) const;
   Eigen::Vector3d vector(const std::string& key, const std::string& unit) const;
   /// A direction of any length but zero, as a unit vector.
   Eigen::Vector3d direction(const std::string& key) const;

@@ -8,30 +8,13 @@
 
 namespace bin_picking
 {
-namespace
-{
-OrientedBox boxAt(const Pose& T_camera_frame, const Eigen::Vector3d& center, const Eigen::Vector3d& size)
-{
-  OrientedBox box;
-  box.T_frame_box = T_camera_frame * Eigen::Translation3d(center);
-  box.half_size = 0.5 * size;
-  return box;
-}
-
-OrientedBox gripperBoxAt(const GripperBox& part, const GripperMotion& motion)
-{
-  const Eigen::Vector3d center = part.center + 0.5 * part.finger * motion.opening * Eigen::Vector3d::UnitY();
-  return boxAt(motion.T_camera_start, center, part.size);
-}
-}  // namespace
-
 BinObstacles::BinObstacles(const Bin& bin)
 {
   const double t = bin.wall_thickness;
   const Eigen::Vector3d inner = bin.inner_size;
   const Eigen::Vector3d outer = inner + Eigen::Vector3d(2 * t, 2 * t, 0);
   const auto add = [&](const char* name, bool floor, const Eigen::Vector3d& center, const Eigen::Vector3d& size) {
-    sides_.push_back({name, floor, boxAt(bin.T_camera_bin, center, size)});
+    sides_.push_back({name, floor, transformed(makeBox(center, size), bin.T_camera_bin)});
   };
   // The walls stand on the floor and end at the rim; the floor reaches under them.
   const double x = 0.5 * (inner.x() + t);
@@ -46,20 +29,21 @@ BinObstacles::BinObstacles(const Bin& bin)
 
 BinClearance BinObstacles::clearance(const Gripper& gripper, const std::vector<GripperMotion>& motions) const
 {
-  if (gripper.boxes.empty())
+  if (gripper.bodies.empty())
     throw ParameterError("The gripper \"" + gripper.name +
-                         "\" has no boxes, so that its way into the bin cannot be "
+                         "\" has no bodies, so that its way into the bin cannot be "
                          "checked; describe its palm and fingers in the gripper file.");
   BinClearance closest{std::numeric_limits<double>::infinity(), false, {}, {}};
   for (const GripperMotion& motion : motions)
-    for (const GripperBox& part : gripper.boxes)
+    for (std::size_t i = 0; i < gripper.bodies.size(); ++i)
     {
-      const OrientedBox box = gripperBoxAt(part, motion);
+      const ConvexBody body =
+          swept(transformed(gripper.bodyAt(i, motion.opening), motion.T_camera_tool0), motion.motion_camera);
       for (const Side& side : sides_)
       {
-        const double distance = sweptBoxClearance(box, motion.motion_camera, side.box);
+        const double distance = bin_picking::clearance(body, side.box);
         if (distance < closest.distance)
-          closest = {distance, side.floor, part.name, side.name};
+          closest = {distance, side.floor, gripper.bodies[i].name, side.name};
       }
     }
   return closest;

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "bin_picking_perception/grasping/box_collision.hpp"
 #include "bin_picking_perception/grasping/gripper.hpp"
 #include "bin_picking_perception/scene/bin.hpp"
 
@@ -14,16 +13,16 @@ namespace bin_picking
 /// Where and how closely the gripper passes a solid of the bin.
 struct BinClearance
 {
-  double distance;          ///< signed, metres; < 0: collision
-  bool floor = false;       ///< true: the floor, false: a wall
-  std::string gripper_box;  ///< the part of the gripper that comes nearest
-  std::string bin_side;     ///< "floor", "wall at +x", ...
+  double distance;           ///< signed, metres; < 0: collision
+  bool floor = false;        ///< true: the floor, false: a wall
+  std::string gripper_body;  ///< the part of the gripper that comes nearest
+  std::string bin_side;      ///< "floor", "wall at +x", ...
 };
 
-/// A straight motion of the tip frame with a fixed finger distance.
+/// A straight motion of the flange with a fixed finger distance.
 struct GripperMotion
 {
-  Pose T_camera_start = Pose::Identity();
+  Pose T_camera_tool0 = Pose::Identity();                   ///< at its start
   Eigen::Vector3d motion_camera = Eigen::Vector3d::Zero();  ///< metres
   double opening = 0;                                       ///< metres
 };
@@ -35,7 +34,7 @@ public:
   explicit BinObstacles(const Bin& bin);
 
   /// The closest passage of the gripper over all motions.
-  /// \throws ParameterError the gripper has no boxes
+  /// \throws ParameterError the gripper has no bodies
   BinClearance clearance(const Gripper& gripper, const std::vector<GripperMotion>& motions) const;
 
 private:
@@ -43,7 +42,7 @@ private:
   {
     std::string name;
     bool floor;
-    OrientedBox box;
+    ConvexBody box;
   };
   std::vector<Side> sides_;
 };

@@ -50,6 +50,19 @@ Surroundings surroundings(const Gripper& gripper, const Bin* bin, const GraspPar
   return s;
 }
 
+/// The flange's poses; not finite where the gripper does not have the width.
+void setTool0(Grasp& grasp, const Gripper& gripper)
+{
+  Pose T_tip_tool0 = Pose::Identity();
+  if (grasp.width >= gripper.min_opening && grasp.width <= gripper.max_opening)
+    T_tip_tool0 = gripper.T_tool0_tip(grasp.width).inverse();
+  else
+    T_tip_tool0.translation().setConstant(std::numeric_limits<double>::quiet_NaN());
+  grasp.T_camera_tool0_pre_grasp = grasp.T_camera_pre_grasp * T_tip_tool0;
+  grasp.T_camera_tool0_grasp = grasp.T_camera_grasp * T_tip_tool0;
+  grasp.T_camera_tool0_retreat = grasp.T_camera_retreat * T_tip_tool0;
+}
+
 Grasp makeGrasp(const Detection& detection, const GraspDefinition& definition, const Pose& T_object_variant,
                 const Surroundings& s)
 {
@@ -66,6 +79,7 @@ Grasp makeGrasp(const Detection& detection, const GraspDefinition& definition, c
   grasp.T_camera_retreat = Eigen::Translation3d(definition.retreat * away) * grasp.T_camera_grasp;
   grasp.width = definition.width;
   grasp.opening = definition.opening;
+  setTool0(grasp, s.gripper);
   grasp.priority = definition.priority;
   grasp.tilt = std::acos(std::clamp(-approach.dot(s.up_camera), -1.0, 1.0));
   grasp.bin_clearance = std::numeric_limits<double>::quiet_NaN();
@@ -107,18 +121,20 @@ void checkTilt(Grasp& grasp, const Surroundings& s)
 }
 
 /// The way in with open fingers and the way out with the part held.
-std::vector<GripperMotion> motionsOf(const Grasp& grasp)
+std::vector<GripperMotion> motionsOf(const Grasp& grasp, const Gripper& gripper)
 {
+  // The path is that of the flange, for which the grasp is where the tip is when it holds.
+  const Pose T_tip_tool0 = gripper.T_tool0_tip(grasp.width).inverse();
   const Eigen::Vector3d at_grasp = grasp.T_camera_grasp.translation();
-  return {{grasp.T_camera_pre_grasp, at_grasp - grasp.T_camera_pre_grasp.translation(), grasp.opening},
-          {grasp.T_camera_grasp, grasp.T_camera_retreat.translation() - at_grasp, grasp.width}};
+  return {{grasp.T_camera_pre_grasp * T_tip_tool0, at_grasp - grasp.T_camera_pre_grasp.translation(), grasp.opening},
+          {grasp.T_camera_grasp * T_tip_tool0, grasp.T_camera_retreat.translation() - at_grasp, grasp.width}};
 }
 
 void checkBin(Grasp& grasp, const Surroundings& s)
 {
   if (!s.obstacles)
     return;
-  const BinClearance closest = s.obstacles->clearance(s.gripper, motionsOf(grasp));
+  const BinClearance closest = s.obstacles->clearance(s.gripper, motionsOf(grasp, s.gripper));
   grasp.bin_clearance = closest.distance;
   if (closest.distance >= s.parameters.bin_clearance)
     return;
@@ -126,7 +142,7 @@ void checkBin(Grasp& grasp, const Surroundings& s)
                                   ? " would cut " + millimetres(-closest.distance) + " into the bin's "
                                   : " would pass at " + millimetres(closest.distance) + " from the bin's ";
   reject(grasp, closest.floor ? GraspRejection::BinFloorCollision : GraspRejection::BinWallCollision,
-         "The gripper's " + closest.gripper_box + passage + closest.bin_side + ", at least " +
+         "The gripper's " + closest.gripper_body + passage + closest.bin_side + ", at least " +
              millimetres(s.parameters.bin_clearance) + " are required (bin_clearance).");
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
-#include "bin_picking_perception/grasping/box_collision.hpp"
+#include "bin_picking_perception/grasping/convex_body.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,31 @@
 #include <random>
 #include <vector>
 
+#include "bin_picking_perception/common/error.hpp"
+
 namespace bin_picking
 {
 namespace
 {
 using Eigen::Vector3d;
+
+struct OrientedBox
+{
+  Pose T_frame_box = Pose::Identity();
+  Vector3d half_size = Vector3d::Zero();
+};
+
+ConvexBody bodyOf(const OrientedBox& box)
+{
+  return transformed(makeBox(Vector3d::Zero(), 2 * box.half_size), box.T_frame_box);
+}
+
+double boxClearance(const OrientedBox& a, const OrientedBox& b) { return clearance(bodyOf(a), bodyOf(b)); }
+
+double sweptBoxClearance(const OrientedBox& moving, const Vector3d& motion, const OrientedBox& fixed)
+{
+  return clearance(swept(bodyOf(moving), motion), bodyOf(fixed));
+}
 
 OrientedBox boxAt(const Vector3d& center, const Vector3d& half_size,
                   const Eigen::Quaterniond& rotation = Eigen::Quaterniond::Identity())
@@ -96,7 +116,7 @@ double reach(const OrientedBox& box, const Vector3d& axis)
   return (box.T_frame_box.linear().transpose() * axis).cwiseAbs().dot(box.half_size);
 }
 
-TEST(BoxCollision, AlignedBoxesHaveTheObviousClearance)
+TEST(BoxClearance, AlignedBoxesHaveTheObviousClearance)
 {
   const OrientedBox cube = boxAt({0, 0, 0}, {0.5, 0.5, 0.5});
   EXPECT_NEAR(boxClearance(cube, boxAt({1.3, 0.2, -0.1}, {0.5, 0.5, 0.5})), 0.3, 1e-12);
@@ -105,7 +125,7 @@ TEST(BoxCollision, AlignedBoxesHaveTheObviousClearance)
   EXPECT_NEAR(boxClearance(cube, cube), -1.0, 1e-12);
 }
 
-TEST(BoxCollision, CrossingEdgesAreExact)
+TEST(BoxClearance, CrossingEdgesAreExact)
 {
   // Two cubes standing on an edge, one above the other and turned by 90 degrees: edge against edge, which only the
   // cross product of the edges separates.
@@ -117,7 +137,7 @@ TEST(BoxCollision, CrossingEdgesAreExact)
   EXPECT_NEAR(boxClearance(lower, boxAt({0, 0, tops - 0.1}, {0.5, 0.5, 0.5}, about_y)), -0.1, 1e-12);
 }
 
-TEST(BoxCollision, ApartTheClearanceIsALowerBoundOfTheDistance)
+TEST(BoxClearance, ApartTheClearanceIsALowerBoundOfTheDistance)
 {
   RandomBoxes random(1);
   int apart = 0;
@@ -139,7 +159,7 @@ TEST(BoxCollision, ApartTheClearanceIsALowerBoundOfTheDistance)
   EXPECT_GT(apart, 50);
 }
 
-TEST(BoxCollision, OverlappingTheClearanceIsTheShortestWayOut)
+TEST(BoxClearance, OverlappingTheClearanceIsTheShortestWayOut)
 {
   // Duality: the penetration depth is the smallest overlap of the shadows over all directions. 4000 directions come
   // within 0.03 rad of any; the shadows change by at most the size of the boxes times that angle.
@@ -164,7 +184,7 @@ TEST(BoxCollision, OverlappingTheClearanceIsTheShortestWayOut)
   EXPECT_GT(overlapping, 100);
 }
 
-TEST(BoxCollision, APointOfOneInsideTheOtherMeansOverlap)
+TEST(BoxClearance, APointOfOneInsideTheOtherMeansOverlap)
 {
   RandomBoxes random(3);
   int touching = 0;
@@ -245,6 +265,153 @@ TEST(SweptBox, AgreesWithManySmallSteps)
   }
   EXPECT_GT(apart, 20);
   EXPECT_GT(overlapping, 20);
+}
+double reach(const std::vector<Vector3d>& points, const Vector3d& axis)
+{
+  double farthest = -std::numeric_limits<double>::infinity();
+  for (const Vector3d& p : points)
+    farthest = std::max(farthest, axis.dot(p));
+  return farthest;
+}
+
+/// What must hold for any body: each plane supports it along a face, each corner lies on three planes, edges are told
+/// once.
+void expectConsistent(const ConvexBody& body)
+{
+  for (const Eigen::Vector4d& plane : body.planes)
+  {
+    EXPECT_NEAR(plane.head<3>().norm(), 1, 1e-9);
+    EXPECT_NEAR(reach(body.vertices, plane.head<3>()), -plane.w(), 1e-8);
+    EXPECT_GE(std::count_if(body.vertices.begin(), body.vertices.end(),
+                            [&](const Vector3d& v) { return plane.head<3>().dot(v) + plane.w() > -1e-8; }),
+              3);
+  }
+  for (const Vector3d& v : body.vertices)
+    EXPECT_GE(std::count_if(body.planes.begin(), body.planes.end(),
+                            [&](const Eigen::Vector4d& plane) { return plane.head<3>().dot(v) + plane.w() > -1e-8; }),
+              3);
+  for (std::size_t i = 0; i < body.edges.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GT(body.edges[i].cross(body.edges[j]).norm(), 1e-9);
+}
+
+/// The body is the hull of the points: it reaches as far in every direction, by corners and by planes.
+void expectHullOf(const ConvexBody& body, const std::vector<Vector3d>& points)
+{
+  expectConsistent(body);
+  for (const Vector3d& axis : directions(500))
+    EXPECT_NEAR(reach(body.vertices, axis), reach(points, axis), 1e-9);
+  for (const Vector3d& p : points)
+    EXPECT_LE(signedDistance(body, p), 1e-12);
+  // Of a closed surface of that many faces, corners and edges (Euler): the triangles of its mesh.
+  EXPECT_EQ(toMesh(body).triangles.size(), 2 * (body.vertices.size() - 2));
+}
+
+std::vector<Vector3d> boxGrid(int n)
+{
+  std::vector<Vector3d> points;
+  for (int x = 0; x <= n; ++x)
+    for (int y = 0; y <= n; ++y)
+      for (int z = 0; z <= n; ++z)
+        points.push_back(Vector3d(0.2 * x, 0.1 * y, 0.05 * z) / n);
+  return points;
+}
+
+TEST(ConvexHull, OfAGridIsTheBoxWithSixFaces)
+{
+  // Most of the points lie within faces and edges.
+  for (const int n : {1, 2, 7})
+  {
+    const Pose T = Eigen::Translation3d(0.3, -0.2, 0.7) * Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized();
+    std::vector<Vector3d> points = boxGrid(n);
+    for (Vector3d& p : points)
+      p = T * p;
+    const ConvexBody hull = makeHull(points);
+    EXPECT_EQ(hull.vertices.size(), 8u);
+    EXPECT_EQ(hull.planes.size(), 6u);
+    EXPECT_EQ(hull.edges.size(), 3u);
+    expectHullOf(hull, points);
+  }
+}
+
+TEST(ConvexHull, OfACylinderHasItsFacets)
+{
+  std::vector<Vector3d> points;
+  for (int i = 0; i < 48; ++i)
+    for (const double z : {0.0, 0.01, 0.1})
+      points.emplace_back(0.02 * std::cos(2 * M_PI * i / 48), 0.02 * std::sin(2 * M_PI * i / 48), z);
+  const ConvexBody hull = makeHull(points);
+  EXPECT_EQ(hull.vertices.size(), 96u);
+  EXPECT_EQ(hull.planes.size(), 50u);
+  EXPECT_EQ(hull.edges.size(), 25u);  // one along the axis, 48 / 2 round it
+  expectHullOf(hull, points);
+  // Single precision, as meshes come, changes none of it.
+  for (Vector3d& p : points)
+    p = p.cast<float>().cast<double>();
+  EXPECT_EQ(makeHull(points).planes.size(), 50u);
+}
+
+TEST(ConvexHull, OfRandomPointsReachesAsFarAsThey)
+{
+  RandomBoxes random(6);
+  for (int i = 0; i < 20; ++i)
+  {
+    std::vector<Vector3d> points;
+    for (int k = 0; k < 4 + 10 * i; ++k)
+      points.push_back(random.vector(-0.1, 0.1));
+    expectHullOf(makeHull(points), points);
+  }
+}
+
+TEST(ConvexHull, OfAFlatThingIsRefused)
+{
+  EXPECT_THROW(makeHull({}), ParameterError);
+  EXPECT_THROW(makeHull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.3, 0.4, 0}}), ParameterError);
+  EXPECT_THROW(makeHull(std::vector<Vector3d>(5, Vector3d(1, 2, 3))), ParameterError);
+  EXPECT_THROW(makeHull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, std::nan("")}}), ParameterError);
+  EXPECT_THROW(makeBox({0, 0, 0}, {1, 0, 1}), ParameterError);
+}
+
+TEST(Sweep, IsTheHullOfStartAndEnd)
+{
+  RandomBoxes random(7);
+  for (int i = 0; i < 60; ++i)
+  {
+    std::vector<Vector3d> corners;
+    for (int k = 0; k < 4 + i; ++k)
+      corners.push_back(random.vector(-0.1, 0.1));
+    const ConvexBody body = i % 2 ? bodyOf(random.box(0.1)) : makeHull(corners);
+    // Along an edge, within a face, and any way.
+    Vector3d motion = random.vector(-0.2, 0.2);
+    if (i % 3 == 0)
+      motion = 0.15 * body.edges[0];
+    if (i % 3 == 1)
+      motion = body.planes[0].head<3>().cross(motion);
+    std::vector<Vector3d> covered = body.vertices;
+    for (const Vector3d& v : body.vertices)
+      covered.push_back(v + motion);
+    expectHullOf(swept(body, motion), covered);
+  }
+}
+
+TEST(Sweep, OfASweepIsAHullToo)
+{
+  const ConvexBody box = makeBox({0, 0, 0}, {0.02, 0.03, 0.04});
+  const Vector3d first(0.1, 0.02, -0.03);
+  const Vector3d second(-0.01, 0.07, 0.02);
+  std::vector<Vector3d> covered;
+  for (const Vector3d& v : box.vertices)
+    for (const Vector3d& shift : {Vector3d(0, 0, 0), first, second, Vector3d(first + second)})
+      covered.push_back(v + shift);
+  expectHullOf(swept(swept(box, first), second), covered);
+}
+
+TEST(ConvexBodies, DistanceOfAPoint)
+{
+  const ConvexBody box = bodyOf(boxAt({0.1, 0, 0}, {0.05, 0.02, 0.01}));
+  EXPECT_NEAR(signedDistance(box, {0.1, 0.005, 0}), -0.01, 1e-12);
+  EXPECT_NEAR(signedDistance(box, {0.1, 0.05, 0}), 0.03, 1e-12);
+  EXPECT_NEAR(signedDistance(box, {0.2, 0.05, 0}), 0.05, 1e-12);  // at an edge: a lower bound
 }
 }  // namespace
 }  // namespace bin_picking
