@@ -98,6 +98,9 @@ struct DetectionResult
   double total_seconds = 0;  ///< cloud in memory -> ranked detections
   std::vector<StageCount> counts;
   std::optional<SegmentationView> segmentation;
+  /// What was measured, floor and walls included, at the finest resolution that a part was searched with: what a
+  /// gripper may touch.
+  std::shared_ptr<const DepthGrid> surroundings;
 };
 
 /// The online phase. Thread-safe: detect() may be called from several threads.

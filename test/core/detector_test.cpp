@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/evaluation/pose_error.hpp"
@@ -147,6 +148,9 @@ TEST(Detector, emptyBinIsAnOrdinaryResultThatSaysSo)
   EXPECT_EQ(result.code, DetectionCode::BinEmpty);
   EXPECT_TRUE(result.detections.empty());
   EXPECT_NE(result.message.find("empty"), std::string::npos);
+  ASSERT_TRUE(result.surroundings);
+  const auto measured = [](float z) { return !std::isnan(z); };
+  EXPECT_GT(std::count_if(result.surroundings->z.begin(), result.surroundings->z.end(), measured), 1000) << "the floor";
 }
 
 TEST(Detector, aSceneThatIsEmptyForOnePartDoesNotLoseTheOther)
@@ -180,6 +184,9 @@ TEST(Detector, aSceneThatIsEmptyForOnePartDoesNotLoseTheOther)
     const auto both = Detector(models, parameters).detect(grid, request);
     EXPECT_EQ(both.code, alone.code) << both.message;
     EXPECT_EQ(both.detections.size(), alone.detections.size());
+    EXPECT_EQ(both.surroundings->size(),
+              Detector({test::teeModel()}, parameters).detect(grid, request).surroundings->size())
+        << "the finer of the two";
   }
 }
 

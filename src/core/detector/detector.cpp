@@ -67,6 +67,12 @@ SegmentationView viewOf(Segmentation&& segmentation, const std::vector<Candidate
   return view;
 }
 
+void keepFinest(DepthGrid&& surroundings, DetectionResult& result)
+{
+  if (!result.surroundings || result.surroundings->size() < surroundings.size())
+    result.surroundings = std::make_shared<const DepthGrid>(std::move(surroundings));
+}
+
 void reportEmptyBin(DetectionResult& result, double measured, int required)
 {
   result.code = DetectionCode::BinEmpty;
@@ -99,7 +105,10 @@ DetectionResult Detector::detectIn(const PointView& points, const Request& reque
     const double measured = measuredPoints(scene);
     most_measured = std::max(most_measured, measured);
     if (measured < parameters_.input.empty_bin_points)
+    {
+      keepFinest(std::move(scene.surroundings), result);
       continue;
+    }
     clock.count("points", measured);
     Segmentation segmentation;
     executor_.forEach(2, [&](std::size_t side) {  // neither needs the other
@@ -121,6 +130,7 @@ DetectionResult Detector::detectIn(const PointView& points, const Request& reque
     std::move(found.begin(), found.end(), std::back_inserter(assessed));
     if (request.keep_segmentation)
       result.segmentation = viewOf(std::move(segmentation), candidates);
+    keepFinest(std::move(scene.surroundings), result);
   }
   selectDetections(std::move(assessed), parameters_, result);
   clock.lap("selection");
