@@ -157,7 +157,9 @@ void expectTipBetweenPads(const Gripper& gripper)
         EXPECT_NEAR(reach(body, Vector3d::UnitZ()), 0.008, 1.5e-4) << "at " << opening;  // beyond the pads' middle
       }
       else if (beside_pads)
+      {
         EXPECT_TRUE(low > opening / 2 || high < -opening / 2) << gripper.bodies[i].name;
+      }
     }
     EXPECT_NEAR(left, opening / 2, 1e-9);
     EXPECT_NEAR(right, opening / 2, 1e-9);
@@ -230,9 +232,13 @@ TEST(GripperFile, suctionCupTouchesWithItsLipAtTheTip)
   {
     const double front = reach(gripper.bodyAt(i, 0), Vector3d::UnitZ()) - gripper.T_tool0_tip(0).translation().z();
     if (gripper.bodies[i].touches_part)
+    {
       EXPECT_NEAR(front, 0, 1e-9);
+    }
     else
+    {
       EXPECT_LT(front, -0.01) << gripper.bodies[i].name;
+    }
   }
 }
 }  // namespace

@@ -37,13 +37,15 @@ public:
   /// \throws ParameterError the gripper has no bodies
   BinClearance clearance(const Gripper& gripper, const std::vector<GripperMotion>& motions) const;
 
-private:
   struct Side
   {
     std::string name;
     bool floor;
-    ConvexBody box;
+    ConvexBody box;  ///< camera frame
   };
+  const std::vector<Side>& sides() const { return sides_; }
+
+private:
   std::vector<Side> sides_;
 };
 }  // namespace bin_picking

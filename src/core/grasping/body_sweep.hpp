@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "bin_picking_perception/grasping/convex_body.hpp"
+#include "bin_picking_perception/grasping/obstacles.hpp"
+
+namespace bin_picking
+{
+/// Distances of cloud and parts beyond this are not asked for, metres.
+constexpr float LOOK_AHEAD = 0.004f;
+
+using Planes = std::vector<Eigen::Vector4f>;
+
+/// What a body of the gripper covers while it moves, camera frame, in the forms that the checks read.
+struct BodySweep
+{
+  explicit BodySweep(ConvexBody body) : shape(std::move(body))
+  {
+    for (const Eigen::Vector4d& plane : shape.planes)
+      planes.push_back(plane.cast<float>());
+    for (const Eigen::Vector3d& v : shape.vertices)
+      box.extend(v.cast<float>());
+  }
+
+  ConvexBody shape;
+  Planes planes;
+  Eigen::AlignedBox3f box;
+};
+
+/// An obstacle that was met, still without words.
+struct Encounter
+{
+  float distance = std::numeric_limits<float>::infinity();
+  float required = 0;
+  ObstacleKind kind = ObstacleKind::None;
+  int index = -1;  ///< of the part, or of the side of the bin
+  Eigen::Vector3f contact = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+
+  float margin() const { return distance - required; }
+  bool free() const { return distance >= required; }
+};
+
+/// Keeps the one that matters more.
+inline void keepWorse(Encounter& worst, const Encounter& other)
+{
+  if (other.margin() < worst.margin())
+    worst = other;
+}
+
+inline float signedDistance(const Planes& planes, const Eigen::Vector3f& p)
+{
+  float distance = -std::numeric_limits<float>::infinity();
+  for (const Eigen::Vector4f& plane : planes)
+    distance = std::max(distance, plane.head<3>().dot(p) + plane.w());
+  return distance;
+}
+
+/// The planes in the frame from which T leads into theirs.
+inline Planes inFrame(const Planes& planes, const Eigen::Isometry3f& T)
+{
+  const Eigen::Matrix3f back = T.linear().transpose();
+  const Eigen::Vector3f origin = T.translation();
+  Planes moved = planes;
+  for (Eigen::Vector4f& plane : moved)
+  {
+    const Eigen::Vector3f normal = plane.head<3>();
+    plane.w() += normal.dot(origin);
+    plane.head<3>() = back * normal;
+  }
+  return moved;
+}
+}  // namespace bin_picking

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "bin_picking_perception/grasping/obstacles.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "bin_collision.hpp"
+#include "bin_picking_perception/common/error.hpp"
+#include "body_sweep.hpp"
+#include "gripper_sweeps.hpp"
+#include "held_part.hpp"
+#include "seen_space.hpp"
+#include "surface_blocks.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+// Distances from the bin beyond this are not asked for, metres.
+constexpr double BIN_LOOK_AHEAD = 0.02;
+
+// A distance field is cut at its band: what is farther must not count as near.
+constexpr float BAND_SHARE = 0.9f;
+
+/// Whether one of the body's faces, or of the other's, keeps them apart by the distance.
+bool farApart(const ConvexBody& a, const ConvexBody& b, double distance)
+{
+  return std::any_of(b.planes.begin(), b.planes.end(), [&](const Eigen::Vector4d& plane) {
+    return std::all_of(a.vertices.begin(), a.vertices.end(),
+                       [&](const Eigen::Vector3d& v) { return plane.head<3>().dot(v) + plane.w() > distance; });
+  });
+}
+
+/// The points of the surface, and the corners of the mesh, which reach farthest between them.
+std::vector<Eigen::Vector3f> surfaceOf(const TrainedModel& model)
+{
+  std::vector<Eigen::Vector3f> points = model.surface.points;
+  points.insert(points.end(), model.mesh.vertices.begin(), model.mesh.vertices.end());
+  return points;
+}
+}  // namespace
+
+struct Obstacles::Impl
+{
+  struct Part
+  {
+    PlacedPart placed;
+    const SurfaceBlocks* surface = nullptr;
+    Eigen::Isometry3f T_camera_object;
+    Eigen::AlignedBox3f box_camera;
+    OwnPixels pixels;
+  };
+
+  ObstacleParameters parameters;
+  std::optional<BinObstacles> bin;
+  std::optional<SeenSpace> seen;
+  std::map<const TrainedModel*, std::unique_ptr<SurfaceBlocks>> surfaces;
+  std::vector<Part> parts;
+
+  const Part& target(std::size_t index) const
+  {
+    if (index >= parts.size())
+      throw ParameterError("There is no part " + std::to_string(index) +
+                           " to be taken: " + std::to_string(parts.size()) + " parts were detected.");
+    return parts[index];
+  }
+
+  void preparePart(std::size_t i)
+  {
+    Part& part = parts[i];
+    const auto T = Eigen::Isometry3f(part.placed.T_camera_object.cast<float>());
+    part.T_camera_object = T;
+    for (int k = 0; k < 8; ++k)
+      part.box_camera.extend(T * part.surface->box().corner(static_cast<Eigen::AlignedBox3f::CornerType>(k)));
+    const DistanceField& field = part.placed.model->field;
+    if (seen)
+      part.pixels =
+          seen->ownPixels(field, part.surface->box(), part.placed.T_camera_object,
+                          std::min(static_cast<float>(parameters.target_tolerance), BAND_SHARE * field.band()));
+  }
+
+  void meetBin(const BodySweep& body, Encounter& worst) const
+  {
+    if (!bin)
+      return;
+    for (std::size_t i = 0; i < bin->sides().size(); ++i)
+    {
+      const BinObstacles::Side& side = bin->sides()[i];
+      if (farApart(body.shape, side.box, BIN_LOOK_AHEAD))
+        continue;
+      keepWorse(worst, {static_cast<float>(bin_picking::clearance(body.shape, side.box)),
+                        static_cast<float>(parameters.bin_clearance),
+                        side.floor ? ObstacleKind::BinFloor : ObstacleKind::BinWall, static_cast<int>(i)});
+    }
+  }
+
+  void meetPart(const BodySweep& body, std::size_t index, bool is_target, Encounter& worst) const
+  {
+    const Part& part = parts[index];
+    const Eigen::Vector3f around = Eigen::Vector3f::Constant(LOOK_AHEAD);
+    if (!part.box_camera.intersects(Eigen::AlignedBox3f(body.box.min() - around, body.box.max() + around)))
+      return;
+    Encounter met;
+    met.distance = LOOK_AHEAD;
+    part.surface->deepest(inFrame(body.planes, part.T_camera_object), met.distance, met.contact);
+    if (met.distance >= LOOK_AHEAD)
+      return;
+    met.required = static_cast<float>(is_target ? parameters.target_clearance : parameters.part_clearance);
+    met.kind = is_target ? ObstacleKind::Target : ObstacleKind::Part;
+    met.index = static_cast<int>(index);
+    met.contact = part.T_camera_object * met.contact;
+    keepWorse(worst, met);
+  }
+
+  Encounter meet(const BodySweep& body, std::size_t target, bool target_counts) const
+  {
+    Encounter worst;
+    meetBin(body, worst);
+    if (target_counts)
+      meetPart(body, target, true, worst);
+    if (!worst.free())
+      return worst;
+    if (seen)
+      keepWorse(worst, seen->nearest(body, parts[target].pixels));
+    for (std::size_t i = 0; i < parts.size() && worst.free(); ++i)
+      if (i != target)
+        meetPart(body, i, false, worst);
+    return worst;
+  }
+
+  Encounter meetHeld(const Eigen::Vector3d& motion_camera, std::size_t target) const
+  {
+    const Part& held = parts[target];
+    const HeldPart way(held.placed.model->field, *held.surface, held.placed.T_camera_object, motion_camera,
+                       static_cast<float>(parameters.max_drag));
+    Encounter worst;
+    if (bin)
+      for (std::size_t i = 0; i < bin->sides().size(); ++i)
+        way.meetSide(bin->sides()[i].box, bin->sides()[i].floor ? ObstacleKind::BinFloor : ObstacleKind::BinWall,
+                     static_cast<int>(i), worst);
+    for (std::size_t i = 0; i < parts.size() && worst.free(); ++i)
+      if (i != target && parts[i].box_camera.intersects(way.box()))
+        way.meet(*parts[i].surface, parts[i].placed.T_camera_object, static_cast<int>(i), worst);
+    if (seen && worst.free())
+      seen->forEachPoint(way.box(), [&](int u, int v, const Eigen::Vector3f& point) {
+        if (!held.pixels.at(u, v))
+          way.meet(point, ObstacleKind::Surface, -1, worst);
+      });
+    return worst;
+  }
+
+  std::string nameOf(const Encounter& met) const
+  {
+    switch (met.kind)
+    {
+      case ObstacleKind::None:
+        return "";
+      case ObstacleKind::BinFloor:
+      case ObstacleKind::BinWall:
+        return bin->sides()[static_cast<std::size_t>(met.index)].name;
+      case ObstacleKind::Surface:
+        return "measured surface";
+      case ObstacleKind::Unknown:
+        return "unseen space";
+      case ObstacleKind::Part:
+      case ObstacleKind::Target:
+        break;
+    }
+    return "part " + std::to_string(met.index) + " (" + parts[static_cast<std::size_t>(met.index)].placed.model->name +
+           ")";
+  }
+
+  Clearance inWords(const Encounter& met, const std::string& body) const
+  {
+    Clearance clearance;
+    if (met.kind == ObstacleKind::None)
+      return clearance;
+    clearance.distance = static_cast<double>(met.distance);
+    clearance.required = static_cast<double>(met.required);
+    clearance.kind = met.kind;
+    clearance.body = body;
+    clearance.obstacle = nameOf(met);
+    if (met.kind == ObstacleKind::Part || met.kind == ObstacleKind::Target)
+      clearance.part = met.index;
+    clearance.contact_camera = met.contact.cast<double>();
+    return clearance;
+  }
+
+  /// The worst of all sweeps, or of the first that comes too near.
+  Clearance worstOf(const Gripper& gripper, const std::vector<GripperSweep>& sweeps, std::size_t target,
+                    bool target_counts) const
+  {
+    Encounter worst;
+    std::size_t body = 0;
+    for (const GripperSweep& sweep : sweeps)
+    {
+      const Encounter met = meet(sweep.sweep, target, target_counts && !sweep.may_touch_target);
+      if (met.margin() < worst.margin())
+      {
+        worst = met;
+        body = sweep.body;
+      }
+      if (!worst.free())
+        break;
+    }
+    return inWords(worst, gripper.bodies[body].name);
+  }
+};
+
+Obstacles::Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<PlacedPart> parts,
+                     const ObstacleParameters& parameters, const Executor& executor)
+{
+  checkRanges(parameters);
+  auto impl = std::make_unique<Impl>();
+  impl->parameters = parameters;
+  if (bin)
+    impl->bin.emplace(*bin);
+  for (const PlacedPart& part : parts)
+  {
+    if (!part.model)
+      throw ParameterError("A part is given without its model; the collision check needs its surface.");
+    impl->surfaces.emplace(part.model, nullptr);
+    impl->parts.emplace_back();
+    impl->parts.back().placed = part;
+  }
+  std::vector<const TrainedModel*> models;
+  for (const auto& [model, surface] : impl->surfaces)
+    models.push_back(model);
+  executor.forEach(models.size() + 1, [&](std::size_t i) {
+    if (i > 0)
+      impl->surfaces.at(models[i - 1]) = std::make_unique<SurfaceBlocks>(surfaceOf(*models[i - 1]));
+    else if (measured)
+      impl->seen.emplace(*measured, bin, parameters);
+  });
+  for (Impl::Part& part : impl->parts)
+    part.surface = impl->surfaces.at(part.placed.model).get();
+  executor.forEach(impl->parts.size(), [&](std::size_t i) { impl->preparePart(i); });
+  impl_ = std::move(impl);
+}
+
+Obstacles::~Obstacles() = default;
+Obstacles::Obstacles(Obstacles&&) noexcept = default;
+Obstacles& Obstacles::operator=(Obstacles&&) noexcept = default;
+
+Clearance Obstacles::approach(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const
+{
+  impl_->target(target);
+  return impl_->worstOf(gripper, sweepsOf(gripper, motion), target, true);
+}
+
+Clearance Obstacles::closing(const Gripper& gripper, const Pose& T_camera_tool0, double from, double to,
+                             std::size_t target) const
+{
+  impl_->target(target);
+  return impl_->worstOf(gripper, closingSweepsOf(gripper, T_camera_tool0, from, to), target, true);
+}
+
+Clearance Obstacles::retreat(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const
+{
+  impl_->target(target);
+  const Clearance of_gripper = impl_->worstOf(gripper, sweepsOf(gripper, motion), target, false);
+  if (!of_gripper.free())
+    return of_gripper;
+  const Clearance of_part = impl_->inWords(impl_->meetHeld(motion.motion_camera, target), "held part");
+  return of_part.distance - of_part.required < of_gripper.distance - of_gripper.required ? of_part : of_gripper;
+}
+}  // namespace bin_picking

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "seen_space.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "seen_space_lanes.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+constexpr float FAR_AWAY = 1e4f;     // metres: free all along the ray; finite, so that products stay numbers
+constexpr float MIN_DEPTH = 0.05f;   // metres: what is nearer to the camera has no place in the picture
+constexpr double MAX_EXTENSION = 2;  // of the picture's size, to either side
+
+int wholeBlocks(int pixels) { return (pixels + BLOCK - 1) / BLOCK * BLOCK; }
+
+/// Where the ray enters the bin through its rim; FAR_AWAY if it does not.
+float depthAtRim(const Bin& bin, const Eigen::Vector3d& ray)
+{
+  const Pose T_bin_camera = bin.T_camera_bin.inverse();
+  const Eigen::Vector3d direction = T_bin_camera.linear() * ray;
+  const Eigen::Vector3d camera = T_bin_camera.translation();
+  const double z = (bin.inner_size.z() - camera.z()) / direction.z();
+  const Eigen::Vector3d at_rim = camera + z * direction;
+  const bool inside = std::abs(at_rim.x()) <= bin.inner_size.x() / 2 && std::abs(at_rim.y()) <= bin.inner_size.y() / 2;
+  return direction.z() < 0 && z > 0 && inside ? static_cast<float>(z) : FAR_AWAY;
+}
+
+std::vector<Eigen::Vector3d> cornersOf(const Bin& bin)
+{
+  std::vector<Eigen::Vector3d> corners;
+  for (const double x : {-0.5, 0.5})
+    for (const double y : {-0.5, 0.5})
+      for (const double z : {0.0, 1.0})
+        corners.push_back(bin.T_camera_bin * bin.inner_size.cwiseProduct(Eigen::Vector3d(x, y, z)));
+  return corners;
+}
+}  // namespace
+
+SeenSpace::SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstacleParameters& parameters)
+    : surface_clearance_(static_cast<float>(parameters.surface_clearance))
+{
+  extendTo(measured, bin);
+  bridgeGaps(measured, bin);
+  allowed_ = allowedDepth(static_cast<float>(parameters.unseen_entry));
+  allowed_own_ = allowedDepth(static_cast<float>(parameters.shadow_entry));
+  findBlockMinima();
+}
+
+void SeenSpace::extendTo(const DepthGrid& measured, const Bin* bin)
+{
+  const PinholeCamera& camera = measured.camera;
+  Eigen::AlignedBox2d picture(Eigen::Vector2d::Zero(), Eigen::Vector2d(measured.width, measured.height));
+  const Eigen::Vector2d most = MAX_EXTENSION * picture.sizes();
+  const Eigen::AlignedBox2d largest(-most, picture.max() + most);
+  if (bin)
+    for (const Eigen::Vector3d& corner : cornersOf(*bin))
+      if (corner.z() > static_cast<double>(MIN_DEPTH))
+        picture.extend(camera.project(corner));
+  picture = picture.intersection(largest);
+  left_ = static_cast<int>(std::ceil(-picture.min().x()));
+  top_ = static_cast<int>(std::ceil(-picture.min().y()));
+  width_ = left_ + static_cast<int>(std::ceil(picture.max().x()));
+  height_ = top_ + static_cast<int>(std::ceil(picture.max().y()));
+  stride_ = wholeBlocks(width_);
+  fx_ = static_cast<float>(camera.fx);
+  fy_ = static_cast<float>(camera.fy);
+  cx_ = static_cast<float>(camera.cx + left_);
+  cy_ = static_cast<float>(camera.cy + top_);
+  const auto pixels = static_cast<std::size_t>(stride_ * wholeBlocks(height_));
+  depth_.assign(pixels, FAR_AWAY);
+  measured_.assign(pixels, 0);
+  hidden_by_.assign(pixels, -1);
+  for (int v = 0; v < measured.height; ++v)
+    for (int u = 0; u < measured.width; ++u)
+      if (measured.valid(measured.index(u, v)))
+      {
+        depth_[index(left_ + u, top_ + v)] = measured.z[static_cast<std::size_t>(measured.index(u, v))];
+        measured_[index(left_ + u, top_ + v)] = 1;
+      }
+}
+
+void SeenSpace::bridgeGaps(const DepthGrid& measured, const Bin* bin)
+{
+  for (const bool open_ends : {false, true})
+  {
+    for (int v = 0; v < measured.height; ++v)
+      bridge(static_cast<int>(index(left_, top_ + v)), 1, measured.width, open_ends);
+    for (int u = 0; u < measured.width; ++u)
+      bridge(static_cast<int>(index(left_ + u, top_)), stride_, measured.height, open_ends);
+  }
+  if (!bin)
+    return;
+  for (int v = 0; v < height_; ++v)
+    for (int u = 0; u < width_; ++u)
+      if (depth_[index(u, v)] == FAR_AWAY)
+        depth_[index(u, v)] = depthAtRim(*bin, ray(u, v).cast<double>());
+}
+
+/// Straight lines across the gaps of one row or column. The nearer of what row and column say remains.
+/// \param open_ends only gaps that have one end, and only pixels that no bridge crosses
+void SeenSpace::bridge(int begin, int step, int count, bool open_ends)
+{
+  const auto at = [&](int i) { return static_cast<std::size_t>(begin + i * step); };
+  const auto offer = [&](int i, float depth, int hidden_by) {
+    const bool nearer = depth < depth_[at(i)];
+    if (!nearer || (open_ends && hidden_by_[at(i)] >= 0 && depth_[at(i)] < FAR_AWAY))
+      return;
+    depth_[at(i)] = depth;
+    hidden_by_[at(i)] = static_cast<std::int32_t>(at(hidden_by));
+  };
+  int before = -1;
+  for (int i = 0; i <= count; ++i)
+  {
+    if (i < count && measured_[at(i)] == 0)
+      continue;
+    const bool has_begin = before >= 0;
+    const bool has_end = i < count;
+    for (int k = before + 1; k < i; ++k)
+      if (has_begin && has_end && !open_ends)
+      {
+        // Along a straight line in space the inverse of the depth is linear in the picture.
+        const float share = static_cast<float>(k - before) / static_cast<float>(i - before);
+        const float a = depth_[at(before)];
+        const float b = depth_[at(i)];
+        offer(k, a * b / (b + share * (a - b)), a < b ? before : i);
+      }
+      else if (has_begin != has_end && open_ends)
+        offer(k, depth_[at(has_begin ? before : i)], has_begin ? before : i);
+    before = i;
+  }
+}
+
+/// The largest depth within `entry` along rows and columns, and `entry` more: how far a body may go that may be off the
+/// free rays by that.
+std::vector<float> SeenSpace::allowedDepth(float entry) const
+{
+  float farthest = 0;
+  for (std::size_t i = 0; i < depth_.size(); ++i)
+    if (measured_[i] != 0)
+      farthest = std::max(farthest, depth_[i]);
+  const int reach = farthest > 0 ? static_cast<int>(entry * std::sqrt(fx_ * fy_) / farthest) : 0;
+  std::vector<float> rows = depth_;
+  std::vector<float> allowed(depth_.size());
+  const int height = static_cast<int>(depth_.size()) / stride_;
+  for (int v = 0; v < height; ++v)
+    for (int k = -reach; k <= reach; ++k)
+      raiseTo(&depth_[index(std::max(0, k), v)], static_cast<std::size_t>(std::max(0, width_ - std::abs(k))),
+              &rows[index(std::max(0, -k), v)]);
+  allowed = rows;
+  for (int v = 0; v < height_; ++v)
+    for (int k = -reach; k <= reach; ++k)
+      if (v + k >= 0 && v + k < height_)
+        raiseTo(&rows[index(0, v + k)], static_cast<std::size_t>(width_), &allowed[index(0, v)]);
+  for (float& depth : allowed)
+    depth += entry;
+  return allowed;
+}
+
+void SeenSpace::findBlockMinima()
+{
+  const int across = stride_ / BLOCK;
+  const int down = static_cast<int>(depth_.size()) / stride_ / BLOCK;
+  block_nearest_.assign(static_cast<std::size_t>(across * down), FAR_AWAY);
+  for (int v = 0; v < down * BLOCK; ++v)
+    for (int u = 0; u < stride_; ++u)
+    {
+      float& nearest = block_nearest_[static_cast<std::size_t>(v / BLOCK * across + u / BLOCK)];
+      nearest = std::min(nearest, depth_[index(u, v)]);
+    }
+}
+
+template <typename Points>
+SeenSpace::Window SeenSpace::windowOf(const Points& points, float margin) const
+{
+  Eigen::AlignedBox2f window;
+  for (const auto& point : points)
+  {
+    const Eigen::Vector3f p = point.template cast<float>();
+    if (p.z() < MIN_DEPTH)
+      return {0, 0, width_, height_};
+    const float z = std::max(MIN_DEPTH, p.z() - margin);
+    const Eigen::Vector2f around(margin * fx_ / z, margin * fy_ / z);
+    const Eigen::Vector2f pixel(p.x() * fx_ / p.z() + cx_, p.y() * fy_ / p.z() + cy_);
+    window.extend(Eigen::Vector2f(pixel - around));
+    window.extend(Eigen::Vector2f(pixel + around));
+  }
+  const auto cut = [](float value, int size) {
+    return static_cast<int>(std::clamp(value, -1.0f, static_cast<float>(size)));
+  };
+  return {std::max(0, cut(std::floor(window.min().x()), width_)),
+          std::max(0, cut(std::floor(window.min().y()), height_)),
+          std::min(width_, cut(std::ceil(window.max().x()), width_) + 1),
+          std::min(height_, cut(std::ceil(window.max().y()), height_) + 1)};
+}
+
+SeenSpace::Window SeenSpace::windowOf(const Eigen::AlignedBox3f& box) const
+{
+  std::array<Eigen::Vector3f, 8> corners;
+  for (int k = 0; k < 8; ++k)
+    corners[static_cast<std::size_t>(k)] = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(k));
+  return windowOf(corners, 0);
+}
+
+OwnPixels SeenSpace::ownPixels(const DistanceField& field, const Eigen::AlignedBox3f& box_object,
+                               const Pose& T_camera_object, float tolerance) const
+{
+  const Eigen::Isometry3f T_camera(T_camera_object.cast<float>());
+  Eigen::AlignedBox3f box;
+  for (int k = 0; k < 8; ++k)
+    box.extend(T_camera * box_object.corner(static_cast<Eigen::AlignedBox3f::CornerType>(k)));
+  const Eigen::Vector3f around = Eigen::Vector3f::Constant(2 * tolerance);
+  const Window w = windowOf(Eigen::AlignedBox3f(box.min() - around, box.max() + around));
+  OwnPixels pixels;
+  pixels.left = w.left;
+  pixels.top = w.top;
+  pixels.width = std::max(0, w.right - w.left);
+  pixels.height = std::max(0, w.bottom - w.top);
+  pixels.own.assign(static_cast<std::size_t>(pixels.width * pixels.height), 0);
+  const Eigen::Isometry3f T_object(T_camera_object.inverse().cast<float>());
+  const auto isOwn = [&](std::size_t i) {
+    const auto u = static_cast<int>(i) % stride_;
+    const auto v = static_cast<int>(i) / stride_;
+    return std::abs(field.at(T_object * pointAt(u, v))) <= tolerance;
+  };
+  for (int v = w.top; v < w.bottom; ++v)
+    for (int u = w.left; u < w.right; ++u)
+    {
+      const std::size_t i = index(u, v);
+      const bool own =
+          measured_[i] != 0 ? isOwn(i) : hidden_by_[i] >= 0 && isOwn(static_cast<std::size_t>(hidden_by_[i]));
+      pixels.own[static_cast<std::size_t>((v - w.top) * pixels.width + u - w.left)] = own ? 1 : 0;
+    }
+  return pixels;
+}
+
+/// Whether the body, LOOK_AHEAD larger, reaches as far as `nearest` on any ray of a block. By the block's corners:
+/// along a line in the picture the inverse depth of a plane is linear.
+bool SeenSpace::mayMeet(const Planes& planes, int u, int v, float nearest) const
+{
+  const std::array<Eigen::Vector3f, 4> rays = {ray(u, v), ray(u + BLOCK - 1, v), ray(u, v + BLOCK - 1),
+                                               ray(u + BLOCK - 1, v + BLOCK - 1)};
+  float leaves = FAR_AWAY;
+  float enters = 0;
+  for (const Eigen::Vector4f& plane : planes)
+  {
+    const Eigen::Vector3f n = plane.head<3>();
+    const Eigen::Array4f along(n.dot(rays[0]), n.dot(rays[1]), n.dot(rays[2]), n.dot(rays[3]));
+    const float offset = LOOK_AHEAD - plane.w();
+    if (along.minCoeff() > 0)
+      leaves = std::min(leaves, offset > 0 ? offset / along.minCoeff() : offset / along.maxCoeff());
+    else if (along.maxCoeff() < 0)
+      enters = std::max(enters, offset > 0 ? 0.0f : offset / along.minCoeff());
+  }
+  return leaves >= nearest && enters <= leaves;
+}
+
+struct SeenSpace::Search
+{
+  const SeenSpace& space;
+  const BodySweep& body;
+  const OwnPixels& target;
+  Encounter worst;
+
+  void block(int u, int v)
+  {
+    if (!space.mayMeet(body.planes, u, v,
+                       space.block_nearest_[static_cast<std::size_t>(v / BLOCK * (space.stride_ / BLOCK) + u / BLOCK)]))
+      return;
+    for (int row = v; row < v + BLOCK; ++row)
+      pixels(u, row);
+  }
+
+  void pixels(int u, int v)
+  {
+    const std::size_t first = space.index(u, v);
+    Lanes lanes;
+    std::array<bool, BLOCK> own{};
+    for (int k = 0; k < BLOCK; ++k)
+    {
+      const std::size_t i = first + static_cast<std::size_t>(k);
+      own[static_cast<std::size_t>(k)] = target.at(u + k, v);
+      lanes.depth[k] = space.depth_[i];
+      lanes.allowed[k] = own[static_cast<std::size_t>(k)] ? space.allowed_own_[i] : space.allowed_[i];
+    }
+    meet(body.planes, space.ray(u, v), 1 / space.fx_, lanes);
+    for (int k = 0; k < BLOCK; ++k)
+    {
+      if (lanes.beyond[k] > 0)
+        keepWorse(worst, {-lanes.beyond[k], 0, ObstacleKind::Unknown, -1,
+                          (lanes.allowed[k] + lanes.beyond[k]) * space.ray(u + k, v)});
+      if (lanes.distance[k] < LOOK_AHEAD && space.measured_[first + static_cast<std::size_t>(k)] != 0 &&
+          !own[static_cast<std::size_t>(k)])
+        keepWorse(worst,
+                  {lanes.distance[k], space.surface_clearance_, ObstacleKind::Surface, -1, space.pointAt(u + k, v)});
+    }
+  }
+};
+
+Encounter SeenSpace::nearest(const BodySweep& body, const OwnPixels& target) const
+{
+  Search search{*this, body, target, {}};
+  const Window w = windowOf(body.shape.vertices, LOOK_AHEAD);
+  const float deepest = body.box.max().z() + LOOK_AHEAD;
+  for (int v = w.top / BLOCK * BLOCK; v < w.bottom; v += BLOCK)
+    for (int u = w.left / BLOCK * BLOCK; u < w.right; u += BLOCK)
+      if (block_nearest_[static_cast<std::size_t>(v / BLOCK * (stride_ / BLOCK) + u / BLOCK)] <= deepest)
+        search.block(u, v);
+  return search.worst;
+}
+}  // namespace bin_picking

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <cstddef>
+
+#include "body_sweep.hpp"
+
+namespace bin_picking
+{
+constexpr int BLOCK = 8;  ///< pixels that are computed at once, and rows of a block
+
+/// Neighbouring pixels of a row and what a body does on their rays.
+struct Lanes
+{
+  float depth[BLOCK];     ///< of the surface, metres along z
+  float allowed[BLOCK];   ///< how far a body may go
+  float distance[BLOCK];  ///< signed, of the surface's point from the body
+  float beyond[BLOCK];    ///< how far the body goes beyond what is allowed, along z; <= 0: it does not
+};
+
+/// Fills distance and beyond. \param ray of the first pixel, z = 1 \param step of the rays' x from pixel to pixel
+void meet(const Planes& planes, const Eigen::Vector3f& ray, float step, Lanes& lanes);
+
+/// Each value at least that of the other row.
+void raiseTo(const float* other, std::size_t count, float* values);
+}  // namespace bin_picking
