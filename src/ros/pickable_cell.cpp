@@ -7,6 +7,7 @@
 
 #include "bin_picking_perception/common/error.hpp"
 #include "part_loading.hpp"
+#include "resource_path.hpp"
 
 namespace bin_picking_ros
 {
@@ -57,12 +58,16 @@ PickableCell::PickableCell(const VirtualCellParameters& parameters)
 {
   for (const CellPart& part : parts_)
     centers_.push_back(surfaceCenter(*part.mesh));
+  if (!parameters.gripper.empty())
+    gripper_ = bin_picking::loadGripper(resolveResource(parameters.gripper));
 }
 
 void PickableCell::refill(const Progress& progress)
 {
   cell_.reset();
   cell_.emplace(parts_, parameters_.cell, parameters_.num_threads);
+  if (!judge_)
+    judge_.emplace(*cell_);
   cell_->fill(parameters_.counts, next_seed_++, progress);
 }
 
@@ -81,18 +86,36 @@ PickOutcome PickableCell::take(int id)
     return outcome;
   outcome.id = id;
   outcome.part = parts_.at(static_cast<std::size_t>(body->shape)).name;
+  outcome.kind = takeGripped(id);
+  outcome.num_left = numLeft();
+  return outcome;
+}
+
+PickOutcome::Kind PickableCell::takeGripped(int id)
+{
   if (luck_.uniform(0, 1) < parameters_.failure_probability)
-    outcome.kind = PickOutcome::Kind::Missed;
-  else if (luck_.uniform(0, 1) < parameters_.drop_probability)
+    return PickOutcome::Kind::Missed;
+  if (luck_.uniform(0, 1) < parameters_.drop_probability)
   {
     cell_->dropAgain(id, static_cast<std::uint32_t>(luck_.below(1 << 30)));
-    outcome.kind = PickOutcome::Kind::DroppedBack;
+    return PickOutcome::Kind::DroppedBack;
   }
-  else
-  {
-    cell_->remove(id);
-    outcome.kind = PickOutcome::Kind::Taken;
-  }
+  cell_->remove(id);
+  return PickOutcome::Kind::Taken;
+}
+
+GripOutcome PickableCell::grip(const bin_picking::simulation::GripPath& path)
+{
+  if (!gripper_)
+    throw bin_picking::ParameterError("no gripper is mounted; name its file in the parameter gripper");
+  GripOutcome outcome;
+  const std::vector<Body> bodies = cell_->bodies();
+  outcome.verdict = judge_->tryGrip(bodies, *gripper_, path, -1, parameters_.grip);
+  for (const Body& body : bodies)
+    if (body.id == outcome.verdict.id)
+      outcome.part = parts_.at(static_cast<std::size_t>(body.shape)).name;
+  if (outcome.verdict.outcome == bin_picking::simulation::GripVerdict::Outcome::Taken)
+    outcome.kind = takeGripped(outcome.verdict.id);
   outcome.num_left = numLeft();
   return outcome;
 }

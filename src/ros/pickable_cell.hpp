@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "grip_trial.hpp"
 #include "random.hpp"
 #include "virtual_cell.hpp"
 #include "virtual_cell_parameters.hpp"
@@ -27,6 +28,15 @@ struct PickOutcome
   Kind kind = Kind::NoSuchPart;
   int id = -1;       ///< of the part that was meant; -1: none
   std::string part;  ///< its name
+  std::size_t num_left = 0;
+};
+
+/// What became of a grip with the mounted gripper.
+struct GripOutcome
+{
+  bin_picking::simulation::GripVerdict verdict;
+  PickOutcome::Kind kind = PickOutcome::Kind::Missed;  ///< has no meaning after a collision
+  std::string part;                                    ///< name of verdict.id; empty: none
   std::size_t num_left = 0;
 };
 
@@ -50,6 +60,10 @@ public:
   /// Fails, or loses the part, as often as the parameters say.
   PickOutcome take(int id);
 
+  /// Makes a grip and judges it. Fails, or loses the part, as often as the parameters say.
+  /// \throws bin_picking::ParameterError no gripper is mounted, a path that no robot can take (see GripJudge)
+  GripOutcome grip(const bin_picking::simulation::GripPath& path);
+
   /// The part whose middle is nearest to that of a part at the pose; none within the tolerance: nothing.
   /// \param part name; empty: any
   std::optional<int> partAt(const bin_picking::Pose& T_camera_object, const std::string& part, double tolerance) const;
@@ -62,10 +76,14 @@ public:
   const bin_picking::simulation::VirtualCell& cell() const { return *cell_; }
 
 private:
+  PickOutcome::Kind takeGripped(int id);
+
   VirtualCellParameters parameters_;
   std::vector<bin_picking::simulation::CellPart> parts_;
   std::vector<Eigen::Vector3d> centers_;  ///< of the parts' surfaces, which no symmetry moves, part frames
+  std::optional<bin_picking::Gripper> gripper_;
   std::optional<bin_picking::simulation::VirtualCell> cell_;
+  std::optional<bin_picking::simulation::GripJudge> judge_;
   std::uint32_t next_seed_;
   std::mt19937 exposure_seeds_;  ///< apart from the next, so that watching the bin does not change what happens to it
   bin_picking::simulation::Random luck_;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "grip_answer.hpp"
 #include "pose_conversion.hpp"
 #include "return_code.hpp"
 #include "take_part_answer.hpp"
@@ -32,6 +33,13 @@ void checkRequest(const bin_picking_perception::TakePart::Request& request)
     throw RequestError(ReturnCode::INVALID_ARGUMENT, "tolerance is " + std::to_string(request.tolerance) +
                                                          " m; it must not be negative; 0 means the parameter.");
 }
+
+void checkRequest(const bin_picking_perception::Grip::Request& request)
+{
+  if (!std::isfinite(request.opening) || !std::isfinite(request.width))
+    throw RequestError(ReturnCode::INVALID_ARGUMENT, "opening is " + std::to_string(request.opening) + " m and width " +
+                                                         std::to_string(request.width) + " m; both must be finite.");
+}
 }  // namespace
 
 VirtualCellNode::VirtualCellNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh)
@@ -51,6 +59,7 @@ VirtualCellNode::~VirtualCellNode()
   trigger_.shutdown();
   refill_.shutdown();
   take_part_.shutdown();
+  grip_.shutdown();
   spinner_->stop();
   if (first_filling_.joinable())
     first_filling_.join();
@@ -77,6 +86,7 @@ void VirtualCellNode::startServices(const ros::NodeHandle& nh, const ros::NodeHa
   trigger_ = service_nh.advertiseService("trigger", &VirtualCellNode::handleTrigger, this);
   refill_ = service_nh.advertiseService("refill", &VirtualCellNode::handleRefill, this);
   take_part_ = service_nh.advertiseService("take_part", &VirtualCellNode::handleTakePart, this);
+  grip_ = service_nh.advertiseService("grip", &VirtualCellNode::handleGrip, this);
   ros::NodeHandle timer_nh(nh);
   timer_nh.setCallbackQueue(&queue_);
   if (parameters_ && parameters_->rate > 0)
@@ -245,6 +255,47 @@ VirtualCellNode::TakePart::Response VirtualCellNode::takePart(const TakePart::Re
   if (!id)
     return nothingThere(request, cell_->numLeft());
   return toAnswer(cell_->take(*id), *id);
+}
+
+bool VirtualCellNode::handleGrip(Grip::Request& request, Grip::Response& response)
+{
+  try
+  {
+    response = grip(request);
+  }
+  catch (...)
+  {
+    response = failedGrip(translateException(std::current_exception()));
+  }
+  if (response.outcome >= 0)
+    ROS_INFO_STREAM(response.what);
+  else
+    ROS_WARN_STREAM_THROTTLE(1.0, "grip: " << response.what);
+  return true;  // false would reach the caller without any data
+}
+
+VirtualCellNode::Grip::Response VirtualCellNode::grip(const Grip::Request& request)
+{
+  requireReady();
+  checkRequest(request);
+  const bin_picking::Pose T_camera_pre_grasp = poseInCamera(request.pre_grasp);  // may wait: before the lock
+  const bin_picking::Pose T_camera_grasp = poseInCamera(request.grasp);
+  const bin_picking::Pose T_camera_retreat = poseInCamera(request.retreat);
+  std::optional<bin_picking::Pose> T_camera_meant;
+  if (!request.part_pose.header.frame_id.empty())
+    T_camera_meant = poseInCamera(request.part_pose);
+  const std::lock_guard<std::mutex> lock(cell_mutex_);
+  requireReady();  // a refill may have been first
+  const bin_picking::Pose T_bin_camera = cell_->cell().bin().T_camera_bin.inverse();
+  const bin_picking::simulation::GripPath path{T_bin_camera * T_camera_pre_grasp, T_bin_camera * T_camera_grasp,
+                                               T_bin_camera * T_camera_retreat, request.opening, request.width};
+  if (!request.part.empty() && !cell_->hasPart(request.part))
+    throw RequestError(ReturnCode::INVALID_ARGUMENT,
+                       "The cell has no part named " + request.part + "; its parts are those of the parameter parts.");
+  std::optional<int> meant;
+  if (T_camera_meant)
+    meant = cell_->partAt(*T_camera_meant, request.part, parameters_->tolerance);
+  return toAnswer(cell_->grip(path), meant);
 }
 
 bin_picking::Pose VirtualCellNode::poseInCamera(const geometry_msgs::PoseStamped& pose) const

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <bin_picking_perception/Grip.h>
 #include <bin_picking_perception/TakePart.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
@@ -39,6 +40,7 @@ public:
 private:
   using Trigger = std_srvs::Trigger;
   using TakePart = bin_picking_perception::TakePart;
+  using Grip = bin_picking_perception::Grip;
 
   enum class State
   {
@@ -71,6 +73,8 @@ private:
   bool handleRefill(Trigger::Request& request, Trigger::Response& response);
   bool handleTakePart(TakePart::Request& request, TakePart::Response& response);
   TakePart::Response takePart(const TakePart::Request& request);
+  bool handleGrip(Grip::Request& request, Grip::Response& response);
+  Grip::Response grip(const Grip::Request& request);
   bin_picking::Pose poseInCamera(const geometry_msgs::PoseStamped& pose) const;
   /// \pre cell_mutex_ is locked
   std::optional<int> partAt(const bin_picking::Pose& T_camera_object, const TakePart::Request& request) const;
@@ -90,6 +94,7 @@ private:
   ros::ServiceServer trigger_;
   ros::ServiceServer refill_;
   ros::ServiceServer take_part_;
+  ros::ServiceServer grip_;
   ros::WallTimer timer_;
   std::unique_ptr<ros::AsyncSpinner> spinner_;
   std::thread first_filling_;

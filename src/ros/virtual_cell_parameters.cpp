@@ -66,13 +66,16 @@ void VirtualCellParameters::visit(bin_picking::ParameterVisitor& v)
   v.field({"bin_frame", "", "static tf frame of the bin (middle of the inner floor, z up); empty: none is published"},
           bin_frame, std::vector<std::string>{});
   v.field({"rate", "Hz", "clouds per second while somebody subscribes; 0: only when ~trigger is called", 0, 100}, rate);
-  v.field({"failure_probability", "", "share of the calls of ~take_part that miss the part", 0, 1},
+  v.field({"failure_probability", "", "share of the calls of ~take_part and ~grip that miss the part", 0, 1},
           failure_probability);
   v.field({"drop_probability", "", "share of the gripped parts that fall back into the bin", 0, 1}, drop_probability);
   v.field({"tolerance", "m", "how far from the pose given to ~take_part the middle of a part may lie", 0.0001, 1},
           tolerance);
-  v.field({"tf_timeout", "s", "how long ~take_part waits for the transform of a pose", 0, 60}, tf_timeout);
+  v.field({"tf_timeout", "s", "how long ~take_part and ~grip wait for the transform of a pose", 0, 60}, tf_timeout);
   v.field({"num_threads", "", "threads of the sensor; 0: all processors", 0, 1024}, num_threads);
+  v.field({"gripper", "", "file that describes the gripper mounted on the virtual robot; empty: none, and no ~grip"},
+          gripper, std::vector<std::string>{});
+  v.group("grip", grip);
   cell.visit(v);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "grip_trial.hpp"
 #include "virtual_cell.hpp"
 
 namespace bin_picking_ros
@@ -26,6 +27,8 @@ struct VirtualCellParameters
   double tolerance = 0.02;
   double tf_timeout = 0.5;
   int num_threads = 0;
+  std::string gripper;
+  bin_picking::simulation::GripTrialParameters grip;
   bin_picking::simulation::CellParameters cell;
 
   /// All but `parts` and `counts`, which are lists.

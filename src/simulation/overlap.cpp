@@ -6,33 +6,13 @@
 #include <limits>
 #include <utility>
 
+#include "triangle_distance.hpp"
+
 namespace bin_picking::simulation
 {
 namespace
 {
 constexpr double SPACING = 0.001;  // metres between points of the surface
-
-double squaredDistanceToSegment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b)
-{
-  const Eigen::Vector3d along = b - a;
-  const double t = std::clamp((p - a).dot(along) / std::max(along.squaredNorm(), 1e-300), 0.0, 1.0);
-  return (a + t * along - p).squaredNorm();
-}
-
-double squaredDistance(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                       const Eigen::Vector3d& c)
-{
-  const Eigen::Vector3d normal = (b - a).cross(c - a);
-  const bool over = (b - a).cross(p - a).dot(normal) >= 0 && (c - b).cross(p - b).dot(normal) >= 0 &&
-                    (a - c).cross(p - c).dot(normal) >= 0;
-  if (over && normal.squaredNorm() > 0)
-  {
-    const double height = (p - a).dot(normal.normalized());
-    return height * height;
-  }
-  return std::min(
-      {squaredDistanceToSegment(p, a, b), squaredDistanceToSegment(p, b, c), squaredDistanceToSegment(p, c, a)});
-}
 
 /// How deep the surface of one reaches into the other.
 double reach(const PlacedShape& one, const PlacedShape& other)
@@ -65,7 +45,7 @@ double OverlapShape::depth(const Eigen::Vector3d& point) const
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& t : mesh_->triangles)
     nearest =
-        std::min(nearest, squaredDistance(point, mesh_->vertices[t[0]].cast<double>(),
+        std::min(nearest, squaredDistanceToTriangle(point, mesh_->vertices[t[0]].cast<double>(),
                                           mesh_->vertices[t[1]].cast<double>(), mesh_->vertices[t[2]].cast<double>()));
   return std::sqrt(nearest);
 }

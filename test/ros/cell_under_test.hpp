@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <bin_picking_perception/Grip.h>
 #include <bin_picking_perception/SceneTruth.h>
 #include <bin_picking_perception/TakePart.h>
 #include <gtest/gtest.h>
@@ -22,6 +23,7 @@
 
 namespace bin_picking_ros
 {
+using bin_picking_perception::Grip;
 using bin_picking_perception::SceneTruth;
 using bin_picking_perception::TakePart;
 
@@ -114,6 +116,15 @@ public:
     call.request = request;
     EXPECT_TRUE(ros::service::call(private_nh_.resolveName("take_part"), call)) << "the call itself failed";
     EXPECT_FALSE(call.response.message.empty());
+    return call.response;
+  }
+
+  Grip::Response grip(const Grip::Request& request)
+  {
+    Grip call;
+    call.request = request;
+    EXPECT_TRUE(ros::service::call(private_nh_.resolveName("grip"), call)) << "the call itself failed";
+    EXPECT_FALSE(call.response.what.empty());
     return call.response;
   }
 
