@@ -52,6 +52,13 @@ typename Service::Response call(ros::ServiceClient& client, const typename Servi
   return response;
 }
 
+/// Errors of one moment. A few of them in a row end the program as attempts do that take nothing.
+bool mayPass(const ReturnCode& code)
+{
+  return code.value == ReturnCode::DEADLINE || code.value == ReturnCode::NO_CLOUD ||
+         code.value == ReturnCode::TF_EXTRAPOLATION;
+}
+
 class Picker
 {
 public:
@@ -114,7 +121,7 @@ private:
     while (!has_started_ && answer.code.value < 0 && (ros::WallTime::now() - start_).toSec() < PATIENCE &&
            ros::WallDuration(0.5).sleep() && ros::ok());
     has_started_ = true;
-    if (answer.code.value < 0)
+    if (answer.code.value < 0 && !mayPass(answer.code))
       throw std::runtime_error(answer.code.name + ": " + answer.code.message + " " + answer.code.hint);
     return answer;
   }
