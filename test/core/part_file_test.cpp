@@ -43,6 +43,8 @@ grasps:
     retreat_distance: 0.07
     priority: 3
     symmetric: false
+    tilt_tolerance_deg: 15
+    spin_tolerance_deg: 180
   - id: side
     position: [0, 0, 0]
     rpy_deg: [90, 0, 90]
@@ -94,6 +96,10 @@ TEST(PartFile, readsEveryKey)
   EXPECT_NEAR(top.retreat, 0.07, 1e-12);
   EXPECT_EQ(top.priority, 3);
   EXPECT_FALSE(top.symmetric);
+  EXPECT_NEAR(top.tilt_tolerance, M_PI / 12, 1e-12);
+  EXPECT_NEAR(top.spin_tolerance, M_PI, 1e-12);
+  EXPECT_EQ(part.grasps[1].tilt_tolerance, 0);
+  EXPECT_EQ(part.grasps[1].spin_tolerance, 0);
   EXPECT_TRUE(part.grasps[1].symmetric);
   EXPECT_EQ(part.grasps[1].priority, 0);
 }
@@ -200,11 +206,14 @@ TEST(PartFile, graspsThatCannotBe)
 {
   expectWords(loadingError(with("opening: 60mm", "opening: 30mm"), "19"),
               {"'top'", "opening must be at least the width"});
-  expectWords(loadingError(with("id: side", "id: top"), "25"), {"'top' is used twice"});
+  expectWords(loadingError(with("id: side", "id: top"), "27"), {"'top' is used twice"});
   expectWords(loadingError(with("closing: [0, 1, 0]", "closing: [0, 1, -1]"), "18"), {"right angle", "45"});
   expectWords(loadingError(with("closing: [0, 1, 0]", "closing: [0, 0, 0]"), "18"), {"must not be [0, 0, 0]"});
-  expectWords(loadingError(with("rpy_deg:", "approach: [1, 0, 0]\n    closing: [0, 1, 0]\n    rpy_deg:"), "29"),
+  expectWords(loadingError(with("rpy_deg:", "approach: [1, 0, 0]\n    closing: [0, 1, 0]\n    rpy_deg:"), "31"),
               {"once"});
+  expectWords(loadingError(with("tolerance_deg: 15", "tolerance_deg: 95"), "25"), {"'tilt_tolerance_deg'", "[0, 90]"});
+  expectWords(loadingError(with("tolerance_deg: 180", "tolerance_deg: -1"), "26"),
+              {"'spin_tolerance_deg'", "[0, 180]"});
   expectWords(loadingError("format: 1\nname: a\nmesh: {file: a.stl, unit: mm}\ngrasps: {id: a}\n", "4"), {"list"});
   expectWords(loadingError("format: 1\nname: a\nmesh: {file: a.stl, unit: mm}\ngrasps: [a]\n", "4"), {"map"});
 }

@@ -55,6 +55,10 @@ struct GraspDefinition
   double retreat = 0.10;   ///< distance of the retreat, metres (against gravity where known, else back along Z)
   int priority = 0;        ///< larger is preferred
   bool symmetric = true;   ///< also offer the copies under the part's symmetry
+  /// How far the gripper may be tilted about its closing axis Y and turned about its approach axis Z, to either side,
+  /// through the point between the finger tips. Radians; 0: not at all. See expandGrasps.
+  double tilt_tolerance = 0;
+  double spin_tolerance = 0;
 };
 
 /// What part.yaml says. The mesh path is absolute or relative to the working folder after loading.

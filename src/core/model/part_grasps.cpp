@@ -51,10 +51,20 @@ double readLength(const YamlMap& yaml, const std::string& key, double value, dou
   return value;
 }
 
+/// \return radians
+double readTolerance(const YamlMap& yaml, const std::string& key, double max_deg)
+{
+  const double degrees = yaml.number(key, "", 0.0);
+  if (!(degrees >= 0 && degrees <= max_deg))
+    yaml.fail(key, "'" + key + "' is " + std::to_string(degrees) + " degrees, but it must lie in [0, " +
+                       std::to_string(static_cast<int>(max_deg)) + "] degrees; it holds to either side");
+  return degrees * M_PI / 180;
+}
+
 GraspDefinition readGrasp(const YamlMap& yaml)
 {
   yaml.allowKeys({"id", "position", "rpy_deg", "approach", "closing", "width", "opening", "approach_distance",
-                  "retreat_distance", "priority", "symmetric"});
+                  "retreat_distance", "priority", "symmetric", "tilt_tolerance_deg", "spin_tolerance_deg"});
   GraspDefinition grasp;
   grasp.id = yaml.text("id");
   grasp.T_object_tip.linear() = readRotation(yaml);
@@ -70,6 +80,8 @@ GraspDefinition readGrasp(const YamlMap& yaml)
   grasp.retreat = readLength(yaml, "retreat_distance", yaml.number("retreat_distance", "m", grasp.retreat), MAX_TRAVEL);
   grasp.priority = yaml.integer("priority", grasp.priority);
   grasp.symmetric = yaml.flag("symmetric", grasp.symmetric);
+  grasp.tilt_tolerance = readTolerance(yaml, "tilt_tolerance_deg", 90);
+  grasp.spin_tolerance = readTolerance(yaml, "spin_tolerance_deg", 180);
   return grasp;
 }
 }  // namespace
