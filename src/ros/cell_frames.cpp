@@ -16,10 +16,12 @@ std::optional<bin_picking::Bin> loadOptionalBin(const std::string& file)
 }
 }  // namespace
 
-CellFrames::CellFrames(const ros::NodeHandle& nh, const NodeParameters& parameters)
+CellFrames::CellFrames(const ros::NodeHandle& nh, const NodeParameters& parameters,
+                       const std::optional<bin_picking::Robot>& robot)
     : output_frame_(parameters.output_frame),
       bin_frame_(parameters.bin_frame),
-      robot_base_frame_(parameters.robot.empty() ? "" : parameters.robot_base_frame),
+      robot_base_frame_(parameters.robot_base_frame),
+      robot_(robot),
       tf_timeout_(parameters.tf_timeout),
       bin_(loadOptionalBin(parameters.bin)),
       lookup_(nh)
@@ -52,9 +54,10 @@ std::optional<bin_picking::Bin> CellFrames::bin(const std_msgs::Header& cloud) c
 
 std::optional<bin_picking::Pose> CellFrames::robotBase(const std_msgs::Header& cloud) const
 {
-  if (robot_base_frame_.empty())
+  if (!robot_)
     return std::nullopt;
-  return find(robot_base_frame_, cloud.frame_id, cloud.stamp);
+  // tf has the ROS frame, kinematics and the controller use the one that is turned against it.
+  return robot_->T_base_link_base.inverse() * find(robot_base_frame_, cloud.frame_id, cloud.stamp);
 }
 
 bin_picking::Pose CellFrames::fixedFrame(const std::optional<bin_picking::Bin>& bin,

@@ -19,7 +19,8 @@ class CellFrames
 {
 public:
   /// \throws bin_picking::Error the bin's file is wrong
-  CellFrames(const ros::NodeHandle& nh, const NodeParameters& parameters);
+  CellFrames(const ros::NodeHandle& nh, const NodeParameters& parameters,
+             const std::optional<bin_picking::Robot>& robot);
 
   /// \param frame empty: that of the node \throws RequestError TF_*, BAD_TRANSFORM, BAD_CLOUD without frame
   OutputFrame output(const std_msgs::Header& cloud, const std::string& frame) const;
@@ -27,7 +28,7 @@ public:
   /// The bin in the cloud's frame; nothing where none is configured. \throws RequestError TF_*, BAD_TRANSFORM
   std::optional<bin_picking::Bin> bin(const std_msgs::Header& cloud) const;
 
-  /// T_base_camera for the tf frame of the robot's base; nothing without a robot. \throws RequestError TF_*,
+  /// T_base_camera, in the frame `base` of the controller; nothing without a robot. \throws RequestError TF_*,
   /// BAD_TRANSFORM
   std::optional<bin_picking::Pose> robotBase(const std_msgs::Header& cloud) const;
 
@@ -44,7 +45,8 @@ private:
 
   const std::string output_frame_;
   const std::string bin_frame_;
-  const std::string robot_base_frame_;  ///< empty: there is no robot
+  const std::string robot_base_frame_;
+  const std::optional<bin_picking::Robot> robot_;
   const double tf_timeout_;
   std::optional<bin_picking::Bin> bin_;
   FrameLookup lookup_;

@@ -31,6 +31,13 @@ void checkRequest(const bin_picking_perception::GetBestGrasp::Request& request)
     throw RequestError(ReturnCode::INVALID_ARGUMENT,
                        "max_age and deadline must not be negative; 0 means the parameter.");
 }
+
+std::optional<bin_picking::Robot> loadOptionalRobot(const std::string& file)
+{
+  if (file.empty())
+    return std::nullopt;
+  return bin_picking::loadRobot(resolveResource(file));
+}
 }  // namespace
 
 struct DetectorNode::Job
@@ -48,9 +55,10 @@ struct DetectorNode::Job
 DetectorNode::DetectorNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : parameters_(readNodeParameters(private_nh)),
       grippers_(GripperSet::load(parameters_.gripper, parameters_.grippers)),
+      robot_(loadOptionalRobot(parameters_.robot)),
       parts_(loadParts(parameters_.parts)),
       nh_(nh),
-      frames_(nh, parameters_),
+      frames_(nh, parameters_, robot_),
       memory_(parameters_.avoid, static_cast<std::size_t>(parameters_.remembered_answers), runName()),
       publisher_(private_nh, parameters_.tf_prefix),
       tuned_(parameters_)
@@ -112,8 +120,8 @@ void DetectorNode::retune(const NodeParameters& parameters)
 
 void DetectorNode::rebuildPipeline()
 {
-  pipeline_ =
-      std::make_shared<PickPipeline>(PickPipeline::Setup{models_, parts_, grippers_, tuned_.detector, tuned_.grasping});
+  pipeline_ = std::make_shared<PickPipeline>(
+      PickPipeline::Setup{models_, parts_, grippers_, tuned_.detector, tuned_.grasping, robot_, tuned_.reach});
 }
 
 std::shared_ptr<const PickPipeline> DetectorNode::readyPipeline() const

@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -69,6 +70,7 @@ private:
 
   const NodeParameters parameters_;
   const GripperSet grippers_;
+  const std::optional<bin_picking::Robot> robot_;
   std::vector<bin_picking::PartDefinition> parts_;
   ros::NodeHandle nh_;
 

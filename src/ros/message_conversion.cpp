@@ -79,6 +79,16 @@ void setUnchecked(msgs::Grasp& message)
   message.contact.x = message.contact.y = message.contact.z = unknown;
 }
 
+void setJoints(const bin_picking::Grasp& grasp, msgs::Grasp& message)
+{
+  message.reach_checked = grasp.reach_checked;
+  if (grasp.joints.size() != 3)
+    return;
+  std::vector<double>* const lists[] = {&message.joints_pre_grasp, &message.joints_grasp, &message.joints_retreat};
+  for (std::size_t i = 0; i < 3; ++i)
+    lists[i]->assign(grasp.joints[i].data(), grasp.joints[i].data() + grasp.joints[i].size());
+}
+
 msgs::Grasp toMessage(const bin_picking::Grasp& grasp, const std::string& gripper, const OutputFrame& output)
 {
   msgs::Grasp message;
@@ -104,6 +114,7 @@ msgs::Grasp toMessage(const bin_picking::Grasp& grasp, const std::string& grippe
   message.bin_clearance = grasp.bin_clearance;
   message.quality = grasp.quality;
   setUnchecked(message);
+  setJoints(grasp, message);
   message.rejection = grasp.reason;
   return message;
 }

@@ -59,6 +59,7 @@ void NodeParameters::visit(bin_picking::ParameterVisitor& v)
   v.group("detector", detector);
   v.group("grasping", grasping);
   v.group("avoid", avoid);
+  v.group("reach", reach);
 }
 
 // By value: older releases of xmlrpcpp read a value through functions that are not const.

@@ -12,6 +12,7 @@
 #include "bin_picking_perception/grasping/avoid_list.hpp"
 #include "bin_picking_perception/grasping/grasp_selection.hpp"
 #include "bin_picking_perception/model/training_parameters.hpp"
+#include "bin_picking_perception/robot/reach.hpp"
 
 namespace bin_picking_ros
 {
@@ -45,6 +46,7 @@ struct NodeParameters
   bin_picking::DetectorParameters detector = bin_picking::DetectorParameters::preset("fast");
   bin_picking::GraspParameters grasping;
   bin_picking::AvoidParameters avoid;
+  bin_picking::ReachParameters reach;
 
   /// All but the lists `parts` and `grippers`.
   void visit(bin_picking::ParameterVisitor& v);

@@ -36,23 +36,19 @@ std::string describe(const bin_picking::AvoidedPlace& place)
          std::to_string(place.picks_left) + " more picks have changed the pile (avoid).";
 }
 
-/// Allowed grasps of parts that are avoided become rejected ones, the first `max_grasps` of the others are kept.
-GraspSelection withoutAvoided(GraspSelection selection, const AvoidQuery& query,
-                              const std::vector<Eigen::Vector3d>& centers, int max_grasps)
+/// Whether a grasp may be offered; otherwise it is given the reason why not.
+using LastCheck = std::function<bool(bin_picking::Grasp&)>;
+
+/// The first `max_grasps` grasps that pass; those before them that do not become rejected ones.
+GraspSelection firstThatPass(GraspSelection selection, const LastCheck& passes, int max_grasps)
 {
-  const auto places = query ? query(centers) : std::vector<std::optional<bin_picking::AvoidedPlace>>(centers.size());
   GraspSelection kept;
   kept.rejected = std::move(selection.rejected);
   for (bin_picking::Grasp& grasp : selection.grasps)
   {
-    if (const auto& place = places[grasp.detection_index])
-    {
-      grasp.rejection = bin_picking::GraspRejection::Avoided;
-      grasp.reason = describe(*place);
-      kept.rejected.push_back(std::move(grasp));
-    }
-    else if (kept.grasps.size() < static_cast<std::size_t>(max_grasps))
-      kept.grasps.push_back(std::move(grasp));
+    if (kept.grasps.size() >= static_cast<std::size_t>(max_grasps))
+      break;
+    (passes(grasp) ? kept.grasps : kept.rejected).push_back(std::move(grasp));
   }
   return kept;
 }
@@ -86,7 +82,11 @@ ReturnCode judge(const DetectionResult& detection, const GraspSelection& selecti
 }
 }  // namespace
 
-PickPipeline::PickPipeline(Setup setup) : setup_(std::move(setup)), detector_(setup_.models, setup_.detector) {}
+PickPipeline::PickPipeline(Setup setup) : setup_(std::move(setup)), detector_(setup_.models, setup_.detector)
+{
+  if (setup_.robot)
+    arm_.emplace(*setup_.robot);
+}
 
 void PickPipeline::requireParts(const std::vector<std::string>& names) const
 {
@@ -117,7 +117,21 @@ GraspSelection PickPipeline::select(const PickResult& result, const PickRequest&
   auto selection =
       bin_picking::selectGrasps(result.detection.detections, setup_.parts, setup_.grippers.find(request.gripper),
                                 result.bin ? &*result.bin : nullptr, parameters, request.accept_undetermined_turn);
-  return withoutAvoided(std::move(selection), request.avoided, result.centers, max_grasps);
+  const auto avoided = request.avoided ? request.avoided(result.centers)
+                                       : std::vector<std::optional<bin_picking::AvoidedPlace>>(result.centers.size());
+  const bool check_reach = arm_ && request.T_base_camera && !request.skip_reach;
+  const auto passes = [&](bin_picking::Grasp& grasp) {
+    if (check_reach)
+      bin_picking::checkReach(grasp, *arm_, *request.T_base_camera, setup_.reach);
+    const auto& place = avoided[grasp.detection_index];
+    if (grasp.rejection == bin_picking::GraspRejection::None && place)
+    {
+      grasp.rejection = bin_picking::GraspRejection::Avoided;
+      grasp.reason = describe(*place);
+    }
+    return grasp.rejection == bin_picking::GraspRejection::None;
+  };
+  return firstThatPass(std::move(selection), passes, max_grasps);
 }
 
 PickResult PickPipeline::run(const sensor_msgs::PointCloud2& cloud, const PickRequest& request) const

@@ -12,6 +12,7 @@
 
 #include "bin_picking_perception/detector.hpp"
 #include "bin_picking_perception/grasping/avoid_list.hpp"
+#include "bin_picking_perception/grasping/grasp_reach.hpp"
 #include "bin_picking_perception/grasping/grasp_selection.hpp"
 #include "gripper_set.hpp"
 #include "return_code.hpp"
@@ -34,7 +35,7 @@ struct PickRequest
   std::string gripper;          ///< name; empty: the one that is meant where nobody says which
   bool skip_collision = false;  ///< nothing but the bin is kept clear of
   bool skip_reach = false;
-  std::optional<bin_picking::Pose> T_base_camera;  ///< of the robot; nothing: its reach is not checked
+  std::optional<bin_picking::Pose> T_base_camera;  ///< in `base` of the robot; nothing: reach is not checked
   AvoidQuery avoided;                              ///< nothing: no part is avoided
 };
 
@@ -63,6 +64,8 @@ public:
     GripperSet grippers;
     bin_picking::DetectorParameters detector;
     bin_picking::GraspParameters grasping;
+    std::optional<bin_picking::Robot> robot;  ///< nothing: reach is not checked
+    bin_picking::ReachParameters reach;
   };
 
   /// \throws bin_picking::ParameterError no models, or a parameter is out of range
@@ -82,5 +85,6 @@ private:
 
   Setup setup_;
   bin_picking::Detector detector_;
+  std::optional<bin_picking::Kinematics> arm_;
 };
 }  // namespace bin_picking_ros

@@ -9,6 +9,7 @@
 #include "bin_picking_perception/detector.hpp"
 #include "bin_picking_perception/grasping/gripper.hpp"
 #include "bin_picking_perception/model/part.hpp"
+#include "bin_picking_perception/robot/robot.hpp"
 #include "bin_picking_perception/scene/bin.hpp"
 
 namespace bin_picking
@@ -40,6 +41,9 @@ enum class GraspRejection
   OpeningTooSmall,  ///< the gripper cannot open as far as the grasp asks
   BinWallCollision,
   BinFloorCollision,
+  OutOfReach,
+  Singular,
+  JointLimit,
   Avoided  ///< the last attempt on the part failed, see AvoidList
 };
 
@@ -65,9 +69,12 @@ struct Grasp
   double width = 0;                      ///< metres, when holding
   double opening = 0;                    ///< metres, on the way in
   int priority = 0;
-  double tilt = 0;           ///< rad
-  double bin_clearance = 0;  ///< smallest distance to the bin on the way, metres; NaN without a bin
-  double quality = 0;        ///< [0, 1], the sort key
+  double tilt = 0;                 ///< rad
+  double bin_clearance = 0;        ///< smallest distance to the bin on the way, metres; NaN without a bin
+  bool collision_checked = false;  ///< against more than the bin
+  bool reach_checked = false;
+  std::vector<Joints> joints;  ///< at pre-grasp, grasp, retreat, one branch; empty: not checked or not reached
+  double quality = 0;          ///< [0, 1], the sort key
   GraspRejection rejection = GraspRejection::None;
   std::string reason;  ///< one sentence with the numbers; empty if not rejected
 };

@@ -50,6 +50,12 @@ const char* toString(GraspRejection rejection)
       return "bin_wall_collision";
     case GraspRejection::BinFloorCollision:
       return "bin_floor_collision";
+    case GraspRejection::OutOfReach:
+      return "out_of_reach";
+    case GraspRejection::Singular:
+      return "singular";
+    case GraspRejection::JointLimit:
+      return "joint_limit";
     case GraspRejection::Avoided:
       return "avoided";
   }
