@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/robot/kinematics.hpp"
 #include "detector_node_fixture.hpp"
 
 namespace
@@ -14,6 +15,14 @@ Pose halfTurn()
 {
   Pose pose = Pose::Identity();
   pose.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return pose;
+}
+
+/// Two metres to the side: beyond any reach.
+Pose farAway()
+{
+  Pose pose = Pose::Identity();
+  pose.translation().y() = 2;
   return pose;
 }
 
@@ -34,6 +43,7 @@ protected:
     broadcaster_->sendTransform({stamped("base_link", "base", halfTurn(), ros::Time::now()),
                                  stretched("stretched", 1.003), stretched("torn", 1.2),
                                  stamped("ring_a", "ring_b", Pose::Identity(), ros::Time::now()),
+                                 stamped("far_away", "base_link", farAway(), ros::Time::now()),
                                  stamped("ring_b", "ring_a", Pose::Identity(), ros::Time::now())});
     camera_->start(makeMessage(scene_->grid));
     EXPECT_EQ(askIn("base").code.value, ReturnCode::OK);  // the models are loaded, and the node has heard the frames
@@ -121,6 +131,78 @@ TEST_F(FramesTest, FramesInALoop)
   EXPECT_EQ(response.code.value, ReturnCode::BAD_TRANSFORM) << response.code.message;
   EXPECT_NE(response.code.message.find("loop"), std::string::npos) << response.code.message;
   EXPECT_EQ(askIn("base_link").code.value, ReturnCode::OK);
+}
+
+TEST_F(FramesTest, RobotWhoseBaseIsNotKnown)
+{
+  const std::string robot = std::string(BIN_PICKING_SOURCE_DIR) + "/config/robots/ur5e.yaml";
+  const ReturnCode missing = codeOf("no_base", [&](const auto& nh) {
+    nh.setParam("robot", robot);
+    nh.setParam("robot_base_frame", "lost_base");
+  });
+  EXPECT_EQ(missing.value, ReturnCode::TF_UNKNOWN_FRAME) << missing.message;
+  EXPECT_NE(missing.message.find("lost_base"), std::string::npos) << missing.message;
+  const ReturnCode far = codeOf("far_base", [&](const auto& nh) {
+    nh.setParam("robot", robot);
+    nh.setParam("robot_base_frame", "island");
+  });
+  EXPECT_EQ(far.value, ReturnCode::TF_DISCONNECTED) << far.message;
+}
+
+TEST_F(FramesTest, ReachIsThatOfTheArmAtItsBase)
+{
+  const std::string robot = std::string(BIN_PICKING_SOURCE_DIR) + "/config/robots/ur5e.yaml";
+  ros::NodeHandle nh("arm");
+  ros::NodeHandle private_nh("arm/detector");
+  setParameters(private_nh);
+  private_nh.setParam("robot", robot);
+  DetectorNode node(nh, private_nh);
+  test_clouds::VirtualCamera camera(nh, "points");
+  camera.start(makeMessage(scene_->grid));
+  ros::ServiceClient client = private_nh.serviceClient<GetBestGrasp>("get_best_grasp");
+  const auto answer = ask({}, client);
+  ASSERT_EQ(answer.code.value, ReturnCode::OK) << answer.code.message << answer.summary;
+  const bin_picking::Kinematics arm(bin_picking::loadRobot(robot));
+  for (const auto& grasp : answer.grasps)
+  {
+    ASSERT_TRUE(grasp.reach_checked);
+    const auto expect = [&arm](const std::vector<double>& joints, const geometry_msgs::Pose& T_base_link_tool0) {
+      ASSERT_EQ(joints.size(), 6u);
+      // The answer is in base_link, the arm's kinematics are in the frame of its controller.
+      const Pose T_base_tool0 = halfTurn().inverse() * fromMessage(T_base_link_tool0);
+      EXPECT_TRUE(arm.forward(Eigen::Map<const bin_picking::Joints>(joints.data())).isApprox(T_base_tool0, 1e-6));
+    };
+    expect(grasp.joints_pre_grasp, grasp.pre_grasp_tool0);
+    expect(grasp.joints_grasp, grasp.grasp_tool0);
+    expect(grasp.joints_retreat, grasp.retreat_tool0);
+  }
+  GetBestGrasp::Request request;
+  request.skip_reach = true;
+  const auto unchecked = ask(request, client);
+  ASSERT_FALSE(unchecked.grasps.empty());
+  EXPECT_FALSE(unchecked.grasps[0].reach_checked);
+  EXPECT_TRUE(unchecked.grasps[0].joints_grasp.empty());
+}
+
+TEST_F(FramesTest, WhatTheArmDoesNotReachIsNotOffered)
+{
+  const ReturnCode code = codeOf("distant", [&](const auto& nh) {
+    nh.setParam("robot", std::string(BIN_PICKING_SOURCE_DIR) + "/config/robots/ur5e.yaml");
+    nh.setParam("robot_base_frame", "far_away");
+  });
+  EXPECT_EQ(code.value, ReturnCode::NO_PICKABLE) << code.message;
+}
+
+TEST_F(FramesTest, WrongRobotIsRefusedAtTheStart)
+{
+  ros::NodeHandle nh("wrong");
+  ros::NodeHandle private_nh("wrong/detector");
+  setParameters(private_nh);
+  for (const char* file : {"/no/such/robot.yaml", BIN_PICKING_SOURCE_DIR "/config/grippers/ag95.yaml"})
+  {
+    private_nh.setParam("robot", file);
+    EXPECT_THROW(DetectorNode(nh, private_nh), bin_picking::FileError) << file;
+  }
 }
 
 TEST_F(FramesTest, BinFrameThatIsMissingOrNoRotation)
