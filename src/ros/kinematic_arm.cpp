@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "kinematic_arm.hpp"
 
+#include <ros/init.h>
 #include <ros/rate.h>
 #include <sensor_msgs/JointState.h>
 

@@ -13,6 +13,7 @@
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <stdexcept>
