@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "bin_picking_perception/grasping/avoid_list.hpp"
+
 namespace bin_picking::picking
 {
 namespace
@@ -16,8 +18,9 @@ using simulation::GripStage;
 using simulation::GripVerdict;
 using simulation::VirtualCell;
 
-constexpr double AVOID_RADIUS = 0.025;  // metres round the middle of a part that a grip has failed on
-constexpr int AVOID_ANSWERS = 3;
+// Of a cell at work: from one exposure to the next, and how long it waits where nothing is allowed. Seconds.
+constexpr double CYCLE = 7;
+constexpr double WAIT = 35;
 constexpr double MIN_VISIBLE = 0.3;  // share of a part that is seen, from which on the truth counts as a detection
 
 class Clock
@@ -28,28 +31,6 @@ public:
 private:
   using Now = std::chrono::steady_clock;
   Now::time_point start_ = Now::now();
-};
-
-/// Places where grips have failed, for some answers.
-class AvoidedPlaces
-{
-public:
-  void add(const Eigen::Vector3d& p) { places_.push_back({p, AVOID_ANSWERS}); }
-  bool contains(const Eigen::Vector3d& p) const
-  {
-    return std::any_of(places_.begin(), places_.end(),
-                       [&p](const auto& place) { return (place.first - p).norm() < AVOID_RADIUS; });
-  }
-  void nextAnswer()
-  {
-    for (auto& place : places_)
-      --place.second;
-    places_.erase(std::remove_if(places_.begin(), places_.end(), [](const auto& p) { return p.second < 0; }),
-                  places_.end());
-  }
-
-private:
-  std::vector<std::pair<Eigen::Vector3d, int>> places_;
 };
 
 /// The parts as they truly lie, where enough of them is seen.
@@ -74,15 +55,18 @@ std::vector<Detection> trueDetections(const CellScan& scan, const VirtualCell& c
   return detections;
 }
 
-bool vouchedAgainst(const GripVerdict& verdict, const Checked& checked)
+PickOutcome outcomeOf(const GripVerdict& verdict)
 {
-  if (verdict.outcome != GripVerdict::Outcome::Collision)
-    return false;
-  if (verdict.body == "held part")
-    return checked.held_part;
-  if (verdict.stage == GripStage::Closing)
-    return checked.closing;
-  return verdict.obstacle == GripObstacle::Bin ? checked.bin : checked.parts;
+  switch (verdict.outcome)
+  {
+    case GripVerdict::Outcome::Taken:
+      return PickOutcome::Picked;
+    case GripVerdict::Outcome::Missed:
+      return PickOutcome::Missed;
+    case GripVerdict::Outcome::Collision:
+      break;
+  }
+  return PickOutcome::Collision;
 }
 
 /// The emptying of one bin.
@@ -128,8 +112,11 @@ private:
 
   GraspPlan plan(const DetectionResult& found)
   {
+    const auto avoid = [&](std::size_t detection) {
+      return std::string(avoided_.contains(middleInBin(found.detections[detection])) ? "an attempt there failed" : "");
+    };
     const Clock clock;
-    GraspPlan plan = planGrasps(place_.setup, found, cell_.bin());
+    GraspPlan plan = planGrasps(place_.planner, place_.detector, found, cell_.bin(), place_.T_base_camera, avoid);
     result_.planning_seconds.push_back(clock.seconds());
     return plan;
   }
@@ -147,18 +134,17 @@ private:
     const CellScan scan = cell_.scan(result_.seed * 1000 + static_cast<std::uint32_t>(clouds_));
     const DetectionResult found = detect(scan);
     const GraspPlan planned = plan(found);
-    const auto grasp = std::find_if(planned.grasps.begin(), planned.grasps.end(), [&](const PlannedGrasp& g) {
-      return !avoided_.contains(middleInBin(found.detections[g.detection]));
-    });
-    avoided_.nextAnswer();
     result_.left = leftovers(scan, cell_, place_.detector, found, planned);
-    if (grasp == planned.grasps.end())
+    now_ += planned.grasps.empty() ? WAIT : CYCLE;
+    avoided_.tick(now_);
+    if (planned.grasps.empty())
       return false;
-    attempt(*grasp, found.detections[grasp->detection], scan, planned.checked);
+    const PlannedGrasp& best = planned.grasps.front();
+    attempt(best, found.detections[best.detection], scan);
     return true;
   }
 
-  void attempt(const PlannedGrasp& grasp, const Detection& detection, const CellScan& scan, const Checked& checked)
+  void attempt(const PlannedGrasp& grasp, const Detection& detection, const CellScan& scan)
   {
     const auto meant = trueInstance(detection, scan, cell_, place_.detector);
     Attempt attempt = describe(grasp, detection);
@@ -169,16 +155,15 @@ private:
                                     T_bin_camera * grasp.T_camera_tool0_grasp,
                                     T_bin_camera * grasp.T_camera_tool0_retreat, grasp.opening, grasp.width};
     const Clock clock;
-    attempt.verdict = judge_.tryGrip(cell_.bodies(), place_.setup.gripper, path, meant ? scan.instances[*meant].id : -1,
-                                     place_.settings.grip);
+    attempt.verdict = judge_.tryGrip(cell_.bodies(), place_.planner.setup().gripper, path,
+                                     meant ? scan.instances[*meant].id : -1, place_.settings.grip);
     result_.judging_seconds.push_back(clock.seconds());
-    attempt.called_free = vouchedAgainst(attempt.verdict, checked);
+    attempt.called_free = grasp.vouched_for && attempt.verdict.outcome == GripVerdict::Outcome::Collision;
     const bool is_taken = attempt.verdict.outcome == GripVerdict::Outcome::Taken;
     failures_ = is_taken ? 0 : failures_ + 1;
+    avoided_.report(outcomeOf(attempt.verdict), middleInBin(detection), now_, detection.part);
     if (is_taken)
       cell_.remove(attempt.verdict.id);
-    else
-      avoided_.add(middleInBin(detection));
     result_.attempts.push_back(std::move(attempt));
   }
 
@@ -208,7 +193,8 @@ private:
   VirtualCell& cell_;
   simulation::GripJudge judge_;
   Workplace place_;
-  AvoidedPlaces avoided_;
+  AvoidList avoided_{AvoidParameters()};
+  double now_ = 0;  ///< seconds since the bin was filled, as a cell would count them
   Emptying result_;
   int clouds_ = 0;
   int failures_ = 0;  ///< in a row

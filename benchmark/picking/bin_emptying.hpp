@@ -55,7 +55,8 @@ struct EmptyingSettings
 struct Workplace
 {
   const Detector& detector;
-  const PlanSetup& setup;
+  const GraspPlanner& planner;
+  Pose T_base_camera;  ///< of the robot's base
   EmptyingSettings settings;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "arguments.hpp"
 #include "bin_picking_perception/common/error.hpp"
@@ -22,8 +23,8 @@ using simulation::VirtualCell;
 namespace
 {
 // As in launch/demo.launch: the bin is level, 0.5 m in front of the base and 0.1 m above it.
-const Pose T_BASE_CAMERA = Eigen::Translation3d(0.5, 0.1116, 0.8922) *
-                           Eigen::Quaterniond(0.069943, 0.997551, 0, 0).normalized();  // w, x, y, z
+const Pose T_BASE_LINK_CAMERA = Eigen::Translation3d(0.5, 0.1116, 0.8922) *
+                                Eigen::Quaterniond(0.069943, 0.997551, 0, 0).normalized();  // w, x, y, z
 
 Syntax syntax()
 {
@@ -43,7 +44,8 @@ Syntax syntax()
            {"--threads", "N", Values::One, "0: all processors (default)"},
            {"--models", "DIR", Values::One, "trained models are kept there (default picking_models)"},
            {"--json", "FILE", Values::One, "every attempt"},
-           {"--set", "KEY=VALUE", Values::Assignments, "parameters of the grasps: max_tilt, bin_clearance, ..."}},
+           {"--set", "KEY=VALUE", Values::Assignments,
+            "parameters of the grasps: max_tilt, obstacles/part_clearance, ..."}},
           "config/parts/three_way_tube --gripper config/grippers/ag95.yaml --seeds 1..4"};
 }
 
@@ -69,7 +71,7 @@ struct Bench
   EmptyingSettings settings;
   GraspParameters grasps;
   Gripper gripper;
-  std::string robot;
+  std::optional<Robot> robot;
   std::string models;
   Range seeds;
   int count = 25;
@@ -90,7 +92,8 @@ Bench benchFrom(const Arguments& arguments)
   bench.settings.truth = arguments.has("--truth");
   bench.settings.max_failures = parseInteger(arguments.value("--failures", "10"), "--failures", 1, 1000000);
   bench.gripper = loadGripper(arguments.value("--gripper"));
-  bench.robot = arguments.value("--robot");
+  if (arguments.has("--robot"))
+    bench.robot = loadRobot(arguments.value("--robot"));
   bench.models = arguments.value("--models", "picking_models");
   bench.seeds = seedsOf(arguments);
   bench.count =
@@ -130,7 +133,9 @@ PartStudy emptyBins(const std::string& name, const std::vector<PartDefinition>& 
     cell_parts.push_back({part.name, std::make_shared<const TriangleMesh>(loadMesh(part.mesh_file, part.mesh_unit))});
   }
   const Detector detector(models, bench.detector);
-  const PlanSetup setup{parts, bench.gripper, bench.robot, T_BASE_CAMERA, bench.grasps};
+  const GraspPlanner planner({parts, bench.gripper, bench.robot, bench.grasps, bench.threads});
+  const Pose T_base_camera =
+      bench.robot ? bench.robot->T_base_link_base.inverse() * T_BASE_LINK_CAMERA : T_BASE_LINK_CAMERA;
   VirtualCell cell(cell_parts, bench.cell, bench.threads);
   PartStudy study;
   study.name = name;
@@ -141,7 +146,7 @@ PartStudy emptyBins(const std::string& name, const std::vector<PartDefinition>& 
     settings.max_picks = bench.picks == 0 ? 0 : bench.picks - attempts;
     progress.show(name + ": bin " + std::to_string(seed) + ", " + std::to_string(attempts) + " picks so far");
     study.bins.push_back(emptyBin(cell, std::vector<int>(parts.size(), bench.count), static_cast<std::uint32_t>(seed),
-                                  {detector, setup, settings}));
+                                  {detector, planner, T_base_camera, settings}));
     attempts += static_cast<int>(study.bins.back().attempts.size());
     progress.finish();
     std::cerr << name << ", bin " << seed << ": " << summary(study.bins.back()) << "\n";

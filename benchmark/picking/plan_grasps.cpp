@@ -2,40 +2,37 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "plan_grasps.hpp"
 
-#include "bin_picking_perception/common/error.hpp"
-
 namespace bin_picking::picking
 {
 namespace
 {
-PlannedGrasp planned(const Grasp& grasp, const Gripper& gripper)
+PlannedGrasp planned(const Grasp& grasp)
 {
-  // The attitude and the place of the flange are those at the moment of holding.
-  const Pose T_tip_tool0 = gripper.T_tool0_tip(grasp.width).inverse();
   PlannedGrasp result;
   result.detection = grasp.detection_index;
   result.id = grasp.grasp_id;
-  result.T_camera_tool0_pre_grasp = grasp.T_camera_pre_grasp * T_tip_tool0;
-  result.T_camera_tool0_grasp = grasp.T_camera_grasp * T_tip_tool0;
-  result.T_camera_tool0_retreat = grasp.T_camera_retreat * T_tip_tool0;
+  result.T_camera_tool0_pre_grasp = grasp.tool0.pre_grasp;
+  result.T_camera_tool0_grasp = grasp.tool0.grasp;
+  result.T_camera_tool0_retreat = grasp.tool0.retreat;
   result.opening = grasp.opening;
   result.width = grasp.width;
   result.tilt = grasp.tilt;
-  result.clearance = grasp.bin_clearance;
+  result.clearance = grasp.clearance.distance;
+  result.vouched_for = grasp.collision_checked;
   return result;
 }
 }  // namespace
 
-GraspPlan planGrasps(const PlanSetup& setup, const DetectionResult& result, const Bin& bin)
+GraspPlan planGrasps(const GraspPlanner& planner, const Detector& detector, const DetectionResult& result,
+                     const Bin& bin, const Pose& T_base_camera, const std::function<std::string(std::size_t)>& avoid)
 {
-  if (!setup.robot_file.empty())
-    throw ParameterError("the reach of a robot is not checked by this program; leave --robot away");
-  const GraspSelection selection =
-      selectGrasps(result.detections, setup.parts, setup.gripper, &bin, setup.parameters, true);
+  GraspPlanner::Request request;
+  request.accept_undetermined_turn = true;
+  request.avoid = avoid;
+  const GraspSelection selection = planner.plan({result, detector.models(), &bin, T_base_camera}, request);
   GraspPlan plan;
-  plan.checked.bin = true;
   for (const Grasp& grasp : selection.grasps)
-    plan.grasps.push_back(planned(grasp, setup.gripper));
+    plan.grasps.push_back(planned(grasp));
   for (const Grasp& grasp : selection.rejected)
     plan.rejected.push_back({grasp.detection_index, toString(grasp.rejection)});
   return plan;

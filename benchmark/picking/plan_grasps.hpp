@@ -2,24 +2,16 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "bin_picking_perception/detector.hpp"
-#include "bin_picking_perception/grasping/grasp_selection.hpp"
+#include "bin_picking_perception/grasping/grasp_planner.hpp"
 #include "bin_picking_perception/grasping/gripper.hpp"
 
 namespace bin_picking::picking
 {
-/// What the answer vouches for: a collision with it is one that the answer called free.
-struct Checked
-{
-  bool bin = false;        ///< the gripper against the bin
-  bool parts = false;      ///< the gripper against all that lies around
-  bool closing = false;    ///< the fingers on their way inwards
-  bool held_part = false;  ///< the part in the hand on the way out
-};
-
 struct PlannedGrasp
 {
   std::size_t detection = 0;  ///< into the detections that were given
@@ -30,7 +22,8 @@ struct PlannedGrasp
   double opening = 0;
   double width = 0;
   double tilt = 0;
-  double clearance = 0;  ///< to what the answer has checked, metres
+  double clearance = 0;      ///< as the answer states it, metres; infinite: nothing is near
+  bool vouched_for = false;  ///< the whole way was checked: a collision is one that the answer called free
 };
 
 struct RejectedGrasp
@@ -43,19 +36,11 @@ struct GraspPlan
 {
   std::vector<PlannedGrasp> grasps;  ///< allowed, best first
   std::vector<RejectedGrasp> rejected;
-  Checked checked;
 };
 
-/// What stays the same from cloud to cloud.
-struct PlanSetup
-{
-  std::vector<PartDefinition> parts;
-  Gripper gripper;
-  std::string robot_file;  ///< empty: reach does not matter
-  Pose T_base_camera = Pose::Identity();
-  GraspParameters parameters;
-};
-
-/// The one place that knows how grasps are planned.
-GraspPlan planGrasps(const PlanSetup& setup, const DetectionResult& result, const Bin& bin);
+/// The grasps of one cloud: parts with an open turn too, since a part that is out is out.
+/// \param T_base_camera of the robot's base; needed where the planner has a robot
+/// \param avoid see GraspPlanner::Request
+GraspPlan planGrasps(const GraspPlanner& planner, const Detector& detector, const DetectionResult& result,
+                     const Bin& bin, const Pose& T_base_camera, const std::function<std::string(std::size_t)>& avoid);
 }  // namespace bin_picking::picking

@@ -6,10 +6,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <sstream>
 #include <utility>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "cloud_wait.hpp"
+#include "grasp_names.hpp"
 #include "part_loading.hpp"
 #include "resource_path.hpp"
 #include "time_difference.hpp"
@@ -19,13 +20,6 @@ namespace bin_picking_ros
 namespace
 {
 using sensor_msgs::PointCloud2ConstPtr;
-
-std::optional<bin_picking::Bin> loadOptionalBin(const std::string& file)
-{
-  if (file.empty())
-    return std::nullopt;
-  return bin_picking::loadBin(resolveResource(file));
-}
 
 void checkRequest(const bin_picking_perception::GetBestGrasp::Request& request)
 {
@@ -38,12 +32,11 @@ void checkRequest(const bin_picking_perception::GetBestGrasp::Request& request)
                        "max_age and deadline must not be negative; 0 means the parameter.");
 }
 
-std::string secondsText(double seconds)
+std::optional<bin_picking::Robot> loadOptionalRobot(const std::string& file)
 {
-  std::ostringstream text;
-  text.precision(3);
-  text << seconds << " s";
-  return text.str();
+  if (file.empty())
+    return std::nullopt;
+  return bin_picking::loadRobot(resolveResource(file));
 }
 }  // namespace
 
@@ -61,11 +54,12 @@ struct DetectorNode::Job
 
 DetectorNode::DetectorNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : parameters_(readNodeParameters(private_nh)),
-      gripper_(bin_picking::loadGripper(resolveResource(parameters_.gripper))),
-      bin_(loadOptionalBin(parameters_.bin)),
+      grippers_(GripperSet::load(parameters_.gripper, parameters_.grippers)),
+      robot_(loadOptionalRobot(parameters_.robot)),
       parts_(loadParts(parameters_.parts)),
       nh_(nh),
-      frames_(nh),
+      frames_(nh, parameters_, robot_),
+      memory_(parameters_.avoid, static_cast<std::size_t>(parameters_.remembered_answers), runName()),
       publisher_(private_nh, parameters_.tf_prefix),
       tuned_(parameters_)
 {
@@ -78,6 +72,7 @@ DetectorNode::DetectorNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
                                                    parameters_.detector.input.max_plausible_depth);
   tuning_ = std::make_unique<Tuning>(private_nh, parameters_, [this](const NodeParameters& p) { retune(p); });
   cloud_subscriber_ = nh_.subscribe("points", 1, &CloudBuffer::store, &clouds_, ros::TransportHints().tcpNoDelay());
+  reports_ = std::make_unique<ReportServices>(private_nh, memory_);
   startService(private_nh);
   if (parameters_.process == ProcessMode::Continuous)
     continuous_thread_ = std::thread([this] { processContinuously(); });
@@ -88,6 +83,7 @@ DetectorNode::~DetectorNode()
   cloud_subscriber_.shutdown();
   clouds_.close();
   frames_.close();
+  turns_.close();
   service_.shutdown();
   service_spinner_->stop();
   if (continuous_thread_.joinable())
@@ -102,13 +98,13 @@ void DetectorNode::startService(const ros::NodeHandle& private_nh)
   ros::NodeHandle service_nh(private_nh);
   service_nh.setCallbackQueue(&service_queue_);
   service_ = service_nh.advertiseService("get_best_grasp", &DetectorNode::handleRequest, this);
-  service_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &service_queue_);
+  service_spinner_ = std::make_unique<ros::AsyncSpinner>(SERVICE_THREADS, &service_queue_);
   service_spinner_->start();
 }
 
 void DetectorNode::setModels(const ModelLoader::Models& models)
 {
-  publisher_.setMarkerMaker(std::make_shared<MarkerMaker>(models, gripper_));
+  publisher_.setMarkerMaker(std::make_shared<MarkerMaker>(models, grippers_));
   const std::lock_guard<std::mutex> lock(pipeline_mutex_);
   models_ = models;
   rebuildPipeline();
@@ -124,8 +120,8 @@ void DetectorNode::retune(const NodeParameters& parameters)
 
 void DetectorNode::rebuildPipeline()
 {
-  pipeline_ =
-      std::make_shared<PickPipeline>(PickPipeline::Setup{models_, parts_, gripper_, tuned_.detector, tuned_.grasping});
+  pipeline_ = std::make_shared<PickPipeline>(
+      PickPipeline::Setup{models_, parts_, grippers_, tuned_.detector, tuned_.grasping, robot_});
 }
 
 std::shared_ptr<const PickPipeline> DetectorNode::readyPipeline() const
@@ -157,86 +153,63 @@ bool DetectorNode::handleRequest(Request& request, Response& response)
 DetectorNode::Response DetectorNode::answer(const Request& request, Job& job)
 {
   checkRequest(request);
+  grippers_.find(request.gripper);
   const std::shared_ptr<const PickPipeline> pipeline = readyPipeline();
   pipeline->requireParts(request.part_ids);
-  job.cloud = request.acquisition == Request::WAIT_NEW ? waitForNew(job) : takeLatest(request, job);
-  const OutputFrame output =
-      outputFrame(job.cloud->header, request.output_frame.empty() ? parameters_.output_frame : request.output_frame);
+  job.cloud = acquire(request, job);
+  const OutputFrame output = frames_.output(job.cloud->header, request.output_frame);
 
   PickRequest pick;
   pick.parts = request.part_ids;
   pick.max_grasps = request.max_grasps;
   pick.accept_undetermined_turn = request.accept_undetermined_turn;
-  return toResponse(process(*pipeline, std::move(pick), output, job), output);
+  pick.gripper = request.gripper;
+  pick.skip_collision = request.skip_collision;
+  pick.skip_reach = request.skip_reach;
+  return toResponse(process(*pipeline, std::move(pick), output, job, PickMemory::Channel::Service), output,
+                    request.list_rejected);
 }
 
-PointCloud2ConstPtr DetectorNode::waitForNew(const Job& job) const
+PointCloud2ConstPtr DetectorNode::acquire(const Request& request, const Job& job) const
 {
-  const double limit = job.deadline > 0 ? std::min(job.deadline, parameters_.cloud_timeout) : parameters_.cloud_timeout;
-  const auto until =
-      job.start + std::chrono::duration_cast<CloudBuffer::Clock::duration>(std::chrono::duration<double>(limit));
-  if (PointCloud2ConstPtr cloud = clouds_.waitForStamp(job.called, until))
-    return cloud;
-  if (clouds_.closed())
+  CloudWish wish{job.called, job.start, 0, cloud_subscriber_.getTopic()};
+  if (request.acquisition == Request::WAIT_NEW)
+  {
+    wish.seconds = job.deadline > 0 ? std::min(job.deadline, parameters_.cloud_timeout) : parameters_.cloud_timeout;
+    return waitForNew(clouds_, wish);
+  }
+  wish.seconds = request.max_age > ros::Duration(0) ? request.max_age.toSec() : parameters_.max_age;
+  return takeLatest(clouds_, wish);
+}
+
+Turns::Turn DetectorNode::waitForTurn(const Job& job)
+{
+  auto until = job.start + std::chrono::hours(24 * 365);  // time_point::max() overflows in older standard libraries
+  if (job.deadline > 0)
+    until = job.start + std::chrono::duration_cast<Turns::Clock::duration>(std::chrono::duration<double>(job.deadline));
+  Turns::Turn turn = turns_.wait(until);
+  if (!turn && clouds_.closed())
     throw RequestError(ReturnCode::NOT_READY, "The node is shutting down.");
-  const PointCloud2ConstPtr latest = clouds_.latest();
-  if (!latest)
-    throw RequestError(ReturnCode::NO_CLOUD, "No cloud has come on " + cloud_subscriber_.getTopic() + " yet; " +
-                                                 secondsText(limit) + " were waited.");
-  throw RequestError(ReturnCode::NO_CLOUD,
-                     "No cloud exposed after the call came within " + secondsText(limit) + "; the newest is stamped " +
-                         secondsText(secondsBetween(latest->header.stamp, job.called)) + " before the call.");
-}
-
-PointCloud2ConstPtr DetectorNode::takeLatest(const Request& request, const Job& job) const
-{
-  PointCloud2ConstPtr cloud = clouds_.latest();
-  if (!cloud)
-    throw RequestError(ReturnCode::NO_CLOUD, "No cloud has come on " + cloud_subscriber_.getTopic() + " yet.");
-  if (cloud->header.stamp.isZero())
-    throw RequestError(ReturnCode::STALE_CLOUD, "The newest cloud carries no time, so that its age is not known.");
-  const double max_age = request.max_age > ros::Duration(0) ? request.max_age.toSec() : parameters_.max_age;
-  const double age = secondsBetween(cloud->header.stamp, job.called);
-  if (age > max_age)
-    throw RequestError(ReturnCode::STALE_CLOUD, "The newest cloud is " + secondsText(age) + " old; at most " +
-                                                    secondsText(max_age) + " are allowed.");
-  return cloud;
-}
-
-OutputFrame DetectorNode::outputFrame(const std_msgs::Header& cloud_header, const std::string& frame) const
-{
-  if (cloud_header.frame_id.empty())
-    throw RequestError(ReturnCode::BAD_CLOUD, "The cloud has no frame_id, so that nobody knows where its points are.");
-  OutputFrame output;
-  output.header.stamp = cloud_header.stamp;
-  output.header.frame_id = frame.empty() ? cloud_header.frame_id : frame;
-  output.T_output_camera =
-      frames_.lookup(output.header.frame_id, cloud_header.frame_id, cloud_header.stamp, parameters_.tf_timeout);
-  return output;
-}
-
-std::optional<bin_picking::Bin> DetectorNode::binAt(const std_msgs::Header& cloud_header) const
-{
-  std::optional<bin_picking::Bin> bin = bin_;
-  if (bin && !parameters_.bin_frame.empty())
-    bin->T_camera_bin =
-        frames_.lookup(cloud_header.frame_id, parameters_.bin_frame, cloud_header.stamp, parameters_.tf_timeout);
-  return bin;
+  if (!turn)
+    throw RequestError(ReturnCode::DEADLINE,
+                       "The deadline of " + secondsText(job.deadline) + " passed before the cloud was used.");
+  return turn;
 }
 
 PickResult DetectorNode::process(const PickPipeline& pipeline, PickRequest pick, const OutputFrame& output,
-                                 const Job& job)
+                                 const Job& job, PickMemory::Channel channel)
 {
-  pick.bin = binAt(job.cloud->header);
+  pick.bin = frames_.bin(job.cloud->header);
+  pick.T_base_camera = frames_.robotBase(job.cloud->header);
+  const bin_picking::Pose T_fixed_camera = CellFrames::fixedFrame(pick.bin, pick.T_base_camera);
+  const Turns::Turn turn = waitForTurn(job);
   pick.keep_segmentation = publisher_.wantsSegmentation();
   if (job.deadline > 0)
-  {
-    pick.deadline = job.deadline - job.elapsed();
-    if (pick.deadline <= 0)
-      throw RequestError(ReturnCode::DEADLINE,
-                         "The deadline of " + secondsText(job.deadline) + " passed before the cloud was used.");
-  }
+    pick.deadline = std::max(job.deadline - job.elapsed(), 1e-9);  // 0 would be none
+  pick.avoided = avoidQuery(memory_, T_fixed_camera);
   PickResult result = pipeline.run(*job.cloud, pick);
+  result.avoided = placesInCamera(memory_, T_fixed_camera);
+  memory_.remember(nameGrasps(result, memory_.nextAnswer(), T_fixed_camera), channel);
   publisher_.publish(result, output);
   diagnostics_->note(result.code, result.detection.timing, result.detection.total_seconds);
   return result;
@@ -266,7 +239,7 @@ void DetectorNode::processContinuously()
     try
     {
       const std::shared_ptr<const PickPipeline> pipeline = readyPipeline();
-      process(*pipeline, PickRequest(), outputFrame(cloud->header, parameters_.output_frame), job);
+      process(*pipeline, PickRequest(), frames_.output(cloud->header, ""), job, PickMemory::Channel::Topic);
     }
     catch (...)
     {

@@ -13,24 +13,33 @@
 #include <string>
 #include <thread>
 
+#include "cell_frames.hpp"
 #include "cloud_buffer.hpp"
-#include "frame_lookup.hpp"
+#include "gripper_set.hpp"
 #include "model_loader.hpp"
 #include "node_diagnostics.hpp"
 #include "node_parameters.hpp"
+#include "pick_memory.hpp"
 #include "pick_pipeline.hpp"
+#include "report_services.hpp"
 #include "result_publisher.hpp"
 #include "tuning.hpp"
+#include "turns.hpp"
 
 namespace bin_picking_ros
 {
 /// The detector as a ROS node: clouds in, service answers, topics and tf out. The constructor returns at once; models
 /// are loaded in the background. Threads: the caller's queue takes clouds, timers and reconfiguration and never waits;
-/// the service has a queue and a thread of its own; so has continuous processing.
+/// requests for grasps have a queue of their own with SERVICE_THREADS; so have reports, and continuous processing.
+///
+/// Requests wait for their cloud and for tf side by side. They are computed one after the other, in the order in which
+/// their clouds were there: a detection already uses all processors, two at once would both be late.
 class DetectorNode
 {
 public:
-  /// \throws bin_picking::Error if a parameter, part.yaml, bin or gripper file is wrong
+  static constexpr unsigned SERVICE_THREADS = 4;
+
+  /// \throws bin_picking::Error if a parameter, part.yaml, bin, gripper or robot file is wrong
   DetectorNode(ros::NodeHandle nh, ros::NodeHandle private_nh);
   /// Ends waiting requests and joins all threads.
   ~DetectorNode();
@@ -52,23 +61,24 @@ private:
 
   bool handleRequest(Request& request, Response& response);
   Response answer(const Request& request, Job& job);
-  sensor_msgs::PointCloud2ConstPtr waitForNew(const Job& job) const;
-  sensor_msgs::PointCloud2ConstPtr takeLatest(const Request& request, const Job& job) const;
-  OutputFrame outputFrame(const std_msgs::Header& cloud_header, const std::string& frame) const;
-  std::optional<bin_picking::Bin> binAt(const std_msgs::Header& cloud_header) const;
-  PickResult process(const PickPipeline& pipeline, PickRequest pick, const OutputFrame& output, const Job& job);
+  sensor_msgs::PointCloud2ConstPtr acquire(const Request& request, const Job& job) const;
+  PickResult process(const PickPipeline& pipeline, PickRequest pick, const OutputFrame& output, const Job& job,
+                     PickMemory::Channel channel);
+  Turns::Turn waitForTurn(const Job& job);
   void processContinuously();
   Response fail(const ReturnCode& code, const Job& job);
 
   const NodeParameters parameters_;
-  bin_picking::Gripper gripper_;
-  std::optional<bin_picking::Bin> bin_;
+  const GripperSet grippers_;
+  const std::optional<bin_picking::Robot> robot_;
   std::vector<bin_picking::PartDefinition> parts_;
   ros::NodeHandle nh_;
 
   CloudBuffer clouds_;
-  FrameLookup frames_;
+  CellFrames frames_;
+  PickMemory memory_;
   ResultPublisher publisher_;
+  Turns turns_;
   mutable std::mutex pipeline_mutex_;  ///< guards the next three
   NodeParameters tuned_;               ///< parameters_ with what dynamic_reconfigure changed
   ModelLoader::Models models_;         ///< empty until they are loaded
@@ -81,6 +91,7 @@ private:
   ros::CallbackQueue service_queue_;
   ros::ServiceServer service_;
   std::unique_ptr<ros::AsyncSpinner> service_spinner_;
+  std::unique_ptr<ReportServices> reports_;
   std::thread continuous_thread_;
 };
 }  // namespace bin_picking_ros

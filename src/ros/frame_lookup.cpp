@@ -22,6 +22,19 @@ std::string describe(const std::string& target, const std::string& source, const
   text << "No transform from " << source << " to " << target << " at the time " << stamp << ": " << why;
   return text.str();
 }
+
+bin_picking::Pose rigidPose(const geometry_msgs::TransformStamped& transform, const std::string& target,
+                            const std::string& source, const ros::Time& stamp)
+{
+  try
+  {
+    return fromMessage(transform.transform);
+  }
+  catch (const RequestError& error)
+  {
+    throw RequestError(ReturnCode::BAD_TRANSFORM, describe(target, source, stamp, error.what()));
+  }
+}
 }  // namespace
 
 // The listener has a thread of its own: a transform must be able to come in while a callback waits for it.
@@ -54,7 +67,7 @@ bin_picking::Pose FrameLookup::lookupNow(const std::string& target, const std::s
 {
   try
   {
-    return fromMessage(buffer_.lookupTransform(target, source, stamp).transform);
+    return rigidPose(buffer_.lookupTransform(target, source, stamp), target, source, stamp);
   }
   catch (const tf2::ConnectivityException& error)
   {
@@ -64,9 +77,12 @@ bin_picking::Pose FrameLookup::lookupNow(const std::string& target, const std::s
   {
     throw RequestError(ReturnCode::TF_EXTRAPOLATION, describe(target, source, stamp, error.what()));
   }
-  catch (const tf2::TransformException& error)  // LookupException, InvalidArgumentException: no such frame
+  catch (const tf2::TransformException& error)  // LookupException, InvalidArgumentException
   {
-    throw RequestError(ReturnCode::TF_UNKNOWN_FRAME, describe(target, source, stamp, error.what()));
+    // Where both frames exist, what tf2 could not follow are parents that lead back to a frame itself.
+    const bool are_known = buffer_._frameExists(target) && buffer_._frameExists(source);
+    throw RequestError(are_known ? ReturnCode::BAD_TRANSFORM : ReturnCode::TF_UNKNOWN_FRAME,
+                       describe(target, source, stamp, error.what()));
   }
 }
 }  // namespace bin_picking_ros

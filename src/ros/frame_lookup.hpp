@@ -20,7 +20,8 @@ public:
   explicit FrameLookup(const ros::NodeHandle& nh);
 
   /// T_target_source at `stamp`. Waits up to `timeout` seconds of wall time for the transform to come; equal frames
-  /// need none. \throws RequestError TF_UNKNOWN_FRAME, TF_EXTRAPOLATION, TF_DISCONNECTED
+  /// need none. \throws RequestError TF_UNKNOWN_FRAME, TF_EXTRAPOLATION, TF_DISCONNECTED; BAD_TRANSFORM: a
+  /// quaternion that is not of length 1 (0.001), numbers that are not finite, frames in a loop
   bin_picking::Pose lookup(const std::string& target, const std::string& source, const ros::Time& stamp,
                            double timeout) const;
 

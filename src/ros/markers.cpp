@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bin_picking_perception/evaluation/detection_picture.hpp"
+#include "grasp_markers.hpp"
 #include "marker_primitives.hpp"
 #include "pose_conversion.hpp"
 
@@ -42,9 +43,8 @@ Marker binMarker(const bin_picking::Bin& bin, const OutputFrame& output)
 }
 }  // namespace
 
-MarkerMaker::MarkerMaker(std::vector<std::shared_ptr<const bin_picking::TrainedModel>> models,
-                         bin_picking::Gripper gripper)
-    : models_(std::move(models)), gripper_(std::move(gripper))
+MarkerMaker::MarkerMaker(std::vector<std::shared_ptr<const bin_picking::TrainedModel>> models, GripperSet grippers)
+    : models_(std::move(models)), grippers_(std::move(grippers))
 {
   for (const auto& model : models_)
     meshes_.push_back(simplifyForDisplay(model->mesh, MAX_DISPLAY_TRIANGLES));
@@ -101,30 +101,6 @@ void MarkerMaker::addDetections(const PickResult& result, const OutputFrame& out
   }
 }
 
-void MarkerMaker::addGrasp(const bin_picking::Grasp& grasp, const OutputFrame& output, MarkerArray& markers) const
-{
-  Marker arrow = makeMarker(output.header, "grasp", 0, Marker::ARROW);
-  arrow.points.push_back(toPoint((output.T_output_camera * grasp.T_camera_pre_grasp).translation()));
-  arrow.points.push_back(toPoint((output.T_output_camera * grasp.T_camera_grasp).translation()));
-  arrow.scale.x = 0.004;  // shaft
-  arrow.scale.y = 0.010;  // head
-  arrow.scale.z = 0.015;
-  arrow.color = toColor({0.1f, 0.9f, 0.9f}, 1.0f);
-  markers.markers.push_back(arrow);
-
-  // As it arrives: open, where the flange is when it holds.
-  const Pose T_output_tool0 =
-      output.T_output_camera * grasp.T_camera_grasp * gripper_.T_tool0_tip(grasp.width).inverse();
-  for (std::size_t i = 0; i < gripper_.bodies.size(); ++i)
-  {
-    Marker marker = makeMarker(output.header, "gripper", i, Marker::TRIANGLE_LIST);
-    marker.pose = toPoseMessage(T_output_tool0);
-    addTriangles(bin_picking::toMesh(gripper_.bodyAt(i, grasp.opening)), marker);
-    marker.color = toColor({0.2f, 0.7f, 0.9f}, 0.5f);
-    markers.markers.push_back(marker);
-  }
-}
-
 MarkerArray MarkerMaker::make(const PickResult& result, const OutputFrame& output) const
 {
   MarkerArray markers = noMarkers(output.header);
@@ -132,7 +108,9 @@ MarkerArray MarkerMaker::make(const PickResult& result, const OutputFrame& outpu
     markers.markers.push_back(binMarker(*result.bin, output));
   addDetections(result, output, markers);
   if (!result.selection.grasps.empty())
-    addGrasp(result.selection.grasps.front(), output, markers);
+    addGrasp(result.selection.grasps.front(), grippers_.find(result.gripper), output, markers);
+  addRejectedGrasps(result.selection.rejected, output, markers);
+  addAvoided(result.avoided, output, markers);
   return markers;
 }
 }  // namespace bin_picking_ros

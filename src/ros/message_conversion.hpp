@@ -7,6 +7,7 @@
 #include <bin_picking_perception/GraspArray.h>
 #include <geometry_msgs/PoseArray.h>
 
+#include <string>
 #include <vector>
 
 #include "pick_pipeline.hpp"
@@ -29,6 +30,13 @@ geometry_msgs::PoseArray toPoseArray(const PickResult& result, const OutputFrame
 /// How often each reason excluded a detection or a grasp, most frequent first.
 std::vector<bin_picking_perception::RejectCount> countRejections(const PickResult& result);
 
-/// The whole answer except its age.
-bin_picking_perception::GetBestGrasp::Response toResponse(const PickResult& result, const OutputFrame& output);
+/// "bin wall collision"
+std::string inWords(bin_picking::GraspRejection rejection);
+
+/// One line about the grasps: how many, and how often which reason excluded one.
+std::string summarize(const bin_picking::GraspSelection& selection);
+
+/// The whole answer except its age. \param list_rejected the rejected grasps too
+bin_picking_perception::GetBestGrasp::Response toResponse(const PickResult& result, const OutputFrame& output,
+                                                          bool list_rejected = false);
 }  // namespace bin_picking_ros

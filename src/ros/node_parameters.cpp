@@ -38,7 +38,12 @@ void NodeParameters::visit(bin_picking::ParameterVisitor& v)
           std::vector<std::string>{});
   v.field({"bin_frame", "", "tf frame of the bin (middle of the inner floor, z up); replaces the pose in the file"},
           bin_frame, std::vector<std::string>{});
-  v.field({"gripper", "", "YAML file that describes the gripper"}, gripper, std::vector<std::string>{});
+  v.field({"gripper", "", "YAML file of the gripper that is meant where a request names none"}, gripper,
+          std::vector<std::string>{});
+  v.field({"robot", "", "YAML file of the robot, to offer only what it reaches; empty: reach is not checked"}, robot,
+          std::vector<std::string>{});
+  v.field({"robot_base_frame", "", "tf frame base_link of the robot (ROS-I), whatever it is called; used with robot"},
+          robot_base_frame, std::vector<std::string>{});
   v.field({"output_frame", "", "frame of all results; empty: the frame of the cloud"}, output_frame,
           std::vector<std::string>{});
   v.field({"tf_prefix", "", "put before the names of the published tf frames; keeps two detectors apart"}, tf_prefix,
@@ -47,11 +52,13 @@ void NodeParameters::visit(bin_picking::ParameterVisitor& v)
   v.field({"max_age", "s", "oldest cloud that USE_LATEST takes when the request does not say", 0, 86400}, max_age);
   v.field({"cloud_timeout", "s", "how long WAIT_NEW waits for a cloud", 0, 3600}, cloud_timeout);
   v.field({"deadline", "s", "time for a whole request when it does not say; 0: none", 0, 3600}, deadline);
+  v.field({"remembered_answers", "", "answers whose grasps ~report_pick still knows", 1, 1000}, remembered_answers);
   v.field({"process", "", "on_demand: clouds are processed when the service asks; continuous: all the time"}, process,
           {{"on_demand", ProcessMode::OnDemand}, {"continuous", ProcessMode::Continuous}});
   v.group("training", training);
   v.group("detector", detector);
   v.group("grasping", grasping);
+  v.group("avoid", avoid);
 }
 
 // By value: older releases of xmlrpcpp read a value through functions that are not const.
@@ -66,6 +73,8 @@ NodeParameters parseNodeParameters(XmlRpcValue tree)
   {
     if (name == "parts")
       parameters.parts = readTexts(value, name, "the directories of the parts");
+    else if (name == "grippers")
+      parameters.grippers = readTexts(value, name, "files of grippers");
     else if (name == "preset")
       bin_picking::setParameter(visit, name, scalarText(value, name));
     else if (FOREIGN.count(name) == 0)

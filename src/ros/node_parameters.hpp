@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "bin_picking_perception/detector_parameters.hpp"
-#include "bin_picking_perception/grasping/grasp_selection.hpp"
+#include "bin_picking_perception/grasping/avoid_list.hpp"
+#include "bin_picking_perception/grasping/grasp_parameters.hpp"
 #include "bin_picking_perception/model/training_parameters.hpp"
 
 namespace bin_picking_ros
@@ -29,18 +30,23 @@ struct NodeParameters
   std::string bin;
   std::string bin_frame;
   std::string gripper = "package://bin_picking_perception/config/grippers/ag95.yaml";
+  std::vector<std::string> grippers;  ///< further ones, which a request may name
+  std::string robot;
+  std::string robot_base_frame = "base_link";
   std::string output_frame;
   std::string tf_prefix;
   double tf_timeout = 0.5;
   double max_age = 5.0;
   double cloud_timeout = 5.0;
   double deadline = 10.0;
+  int remembered_answers = 20;
   ProcessMode process = ProcessMode::OnDemand;
   bin_picking::TrainingParameters training;
   bin_picking::DetectorParameters detector = bin_picking::DetectorParameters::preset("fast");
   bin_picking::GraspParameters grasping;
+  bin_picking::AvoidParameters avoid;
 
-  /// All but `parts`, which is a list.
+  /// All but the lists `parts` and `grippers`.
   void visit(bin_picking::ParameterVisitor& v);
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "bin_picking_perception/common/parameters.hpp"
@@ -27,6 +28,20 @@ auto timed(const std::string& stage, std::vector<bin_picking::StageTime>& timing
   return result;
 }
 
+std::string describe(const bin_picking::AvoidedPlace& place)
+{
+  return std::string("The last attempt to take the part there ended as \"") + bin_picking::toString(place.outcome) +
+         "\"; it is avoided for " + std::to_string(std::lround(place.until - place.since)) + " s from then or until " +
+         std::to_string(place.picks_left) + " more picks have changed the pile (avoid).";
+}
+
+bool anyAvoided(const GraspSelection& selection)
+{
+  return std::any_of(selection.rejected.begin(), selection.rejected.end(), [](const bin_picking::Grasp& grasp) {
+    return grasp.rejection == bin_picking::GraspRejection::Avoided;
+  });
+}
+
 ReturnCode judge(const DetectionResult& detection, const GraspSelection& selection)
 {
   const std::string grasps = "; " + std::to_string(selection.grasps.size()) + " grasps allowed, " +
@@ -44,11 +59,17 @@ ReturnCode judge(const DetectionResult& detection, const GraspSelection& selecti
     case DetectionCode::Ok:
       break;
   }
-  return makeReturnCode(ReturnCode::NO_PICKABLE, detection.message + grasps);
+  const bool only_avoided = anyAvoided(selection);
+  return makeReturnCode(only_avoided ? ReturnCode::ALL_AVOIDED : ReturnCode::NO_PICKABLE, detection.message + grasps);
 }
 }  // namespace
 
-PickPipeline::PickPipeline(Setup setup) : setup_(std::move(setup)), detector_(setup_.models, setup_.detector) {}
+PickPipeline::PickPipeline(Setup setup) : setup_(std::move(setup)), detector_(setup_.models, setup_.detector)
+{
+  for (const bin_picking::Gripper& gripper : setup_.grippers.all())
+    planners_.try_emplace(gripper.name, bin_picking::GraspPlanner::Setup{setup_.parts, gripper, setup_.robot,
+                                                                         setup_.grasping, setup_.detector.num_threads});
+}
 
 void PickPipeline::requireParts(const std::vector<std::string>& names) const
 {
@@ -69,6 +90,22 @@ void PickPipeline::requireParts(const std::vector<std::string>& names) const
   }
 }
 
+GraspSelection PickPipeline::plan(const PickResult& result, const PickRequest& request) const
+{
+  const auto avoided = request.avoided ? request.avoided(result.centers)
+                                       : std::vector<std::optional<bin_picking::AvoidedPlace>>(result.centers.size());
+  bin_picking::GraspPlanner::Request query;
+  query.accept_undetermined_turn = request.accept_undetermined_turn;
+  query.check_collision = !request.skip_collision;
+  query.check_reach = request.T_base_camera && !request.skip_reach;
+  query.max_grasps = request.max_grasps;
+  query.avoid = [&avoided](std::size_t detection) {
+    return avoided[detection] ? describe(*avoided[detection]) : std::string();
+  };
+  const bin_picking::Bin* bin = result.bin ? &*result.bin : nullptr;
+  return planners_.at(result.gripper).plan({result.detection, setup_.models, bin, request.T_base_camera}, query);
+}
+
 PickResult PickPipeline::run(const sensor_msgs::PointCloud2& cloud, const PickRequest& request) const
 {
   requireParts(request.parts);
@@ -85,15 +122,12 @@ PickResult PickPipeline::run(const sensor_msgs::PointCloud2& cloud, const PickRe
   PickResult result;
   result.cloud_header = cloud.header;
   result.bin = request.bin;
+  result.gripper = setup_.grippers.find(request.gripper).name;
   result.detection = detector_.detect(points, query);
+  for (const bin_picking::Detection& detection : result.detection.detections)
+    result.centers.push_back(detection.T_camera_object * setup_.models.at(detection.model_index)->center);
   timing.insert(timing.end(), result.detection.timing.begin(), result.detection.timing.end());
-  bin_picking::GraspParameters grasping = setup_.grasping;
-  if (request.max_grasps > 0)
-    grasping.max_grasps = static_cast<int>(std::min(request.max_grasps, static_cast<std::size_t>(grasping.max_grasps)));
-  result.selection = timed("grasp selection", timing, [&] {
-    return bin_picking::selectGrasps(result.detection.detections, setup_.parts, setup_.gripper,
-                                     request.bin ? &*request.bin : nullptr, grasping, request.accept_undetermined_turn);
-  });
+  result.selection = timed("grasp planning", timing, [&] { return plan(result, request); });
   result.detection.timing = std::move(timing);
   result.detection.total_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.code = judge(result.detection, result.selection);

@@ -74,8 +74,8 @@ void ResultPublisher::broadcast(const PickResult& result, const OutputFrame& out
     add("part_" + std::to_string(k), result.detection.detections[k].T_camera_object);
   if (!result.selection.grasps.empty())
   {
-    add("grasp", result.selection.grasps.front().T_camera_grasp);
-    add("pre_grasp", result.selection.grasps.front().T_camera_pre_grasp);
+    add("grasp", result.selection.grasps.front().tip.grasp);
+    add("pre_grasp", result.selection.grasps.front().tip.pre_grasp);
   }
   if (!transforms.empty())
     broadcaster_.sendTransform(transforms);

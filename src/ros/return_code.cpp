@@ -17,13 +17,15 @@ struct CodeText
   const char* hint;
 };
 
-constexpr std::array<CodeText, 17> CODES = {{
+constexpr std::array<CodeText, 22> CODES = {{
     {ReturnCode::OK, "OK", ""},
     {ReturnCode::PARTIAL, "PARTIAL", "Allow a longer deadline, or choose the preset fast."},
     {ReturnCode::BIN_EMPTY, "BIN_EMPTY", "Bring the next bin; if parts are left, check the bin's pose and size."},
     {ReturnCode::NO_MATCH, "NO_MATCH",
      "Stir the bin or move the camera; look at the rejected detections for what was close."},
     {ReturnCode::NO_PICKABLE, "NO_PICKABLE", "Stir the bin; see the summary of reasons, and add grasps to part.yaml."},
+    {ReturnCode::ALL_AVOIDED, "ALL_AVOIDED",
+     "Call again later, or ~clear_avoid_list to try these parts again; stir the bin if they fail again."},
     {ReturnCode::INVALID_ARGUMENT, "INVALID_ARGUMENT", "Correct the request."},
     {ReturnCode::INTERNAL, "INTERNAL", "Look at the log of the node for the first error."},
     {ReturnCode::DEADLINE, "DEADLINE", "Allow a longer deadline, or choose the preset fast."},
@@ -40,6 +42,12 @@ constexpr std::array<CodeText, 17> CODES = {{
      "Publish the transform between robot and camera (hand-eye calibration)."},
     {ReturnCode::UNIT_SUSPECT, "UNIT_SUSPECT", "Let the driver publish metres (REP 103)."},
     {ReturnCode::PART_UNKNOWN, "PART_UNKNOWN", "Add the part's directory to the parameter ~parts."},
+    {ReturnCode::GRIPPER_UNKNOWN, "GRIPPER_UNKNOWN", "Add the gripper's file to the parameter ~grippers."},
+    {ReturnCode::ROBOT_INVALID, "ROBOT_INVALID", "Correct the file that the parameter ~robot names."},
+    {ReturnCode::GRASP_UNKNOWN, "GRASP_UNKNOWN",
+     "Report the uid of a grasp of a recent answer, once; raise ~remembered_answers if it was forgotten."},
+    {ReturnCode::BAD_TRANSFORM, "BAD_TRANSFORM",
+     "Correct who publishes the transform: a unit quaternion, finite numbers, one parent for each frame."},
 }};
 
 std::int16_t codeOf(bin_picking::CloudFault fault)

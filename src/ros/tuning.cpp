@@ -21,7 +21,7 @@ const std::vector<std::pair<std::string, std::string>>& tunableParameters()
       {"edge_depth", "detector/segmentation/edge_depth"},
       {"grasp_min_matching_rate", "grasping/min_matching_rate"},
       {"grasp_max_tilt", "grasping/max_tilt"},
-      {"grasp_bin_clearance", "grasping/bin_clearance"},
+      {"grasp_bin_clearance", "grasping/obstacles/bin_clearance"},
   };
   return names;
 }

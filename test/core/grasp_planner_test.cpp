@@ -565,9 +565,8 @@ TEST(GraspPlanner, AnAvoidedPlaceIsSkippedWithItsReason)
 {
   const std::vector<Detection> detections = {detectionAt({-0.08, 0, 0.06}), detectionAt({0.08, 0, 0.06})};
   GraspPlanner::Request request;
-  request.avoid = [&](const Vector3d& center_camera) {
-    const bool there = (center_camera - detections[0].T_camera_object.translation()).norm() < 0.001;
-    return there ? std::string("It was missed 3 s ago.") : std::string();
+  request.avoid = [](std::size_t detection) {
+    return detection == 0 ? std::string("It was missed 3 s ago.") : std::string();
   };
   const Bin bin = binBelowCamera();
   const GraspSelection selection =

@@ -82,6 +82,9 @@ protected:
     private_nh.setParam("tf_prefix", "cell_");
     private_nh.setParam("cloud_timeout", 20);
     private_nh.setParam("deadline", 0);
+    private_nh.setParam("grippers",
+                        std::vector<std::string>{std::string(BIN_PICKING_SOURCE_DIR) + "/test/ros/wide_hand.yaml"});
+    private_nh.setParam("remembered_answers", 4);
   }
 
   /// Asks until the models are there.

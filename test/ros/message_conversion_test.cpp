@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "bin_picking_perception/common/error.hpp"
@@ -51,11 +53,22 @@ PickResult someResult()
   grasp.grasp_id = "top";
   grasp.detection_index = 1;
   grasp.undetermined_turn = true;
-  grasp.T_camera_grasp = makePose(1.0, {0, 1, 0}, {0.1, 0.2, 0.75});
-  grasp.T_camera_pre_grasp = grasp.T_camera_grasp * Eigen::Translation3d(0, 0, -0.08);
+  grasp.tip.grasp = makePose(1.0, {0, 1, 0}, {0.1, 0.2, 0.75});
+  grasp.tip.pre_grasp = grasp.tip.grasp * Eigen::Translation3d(0, 0, -0.08);
+  // The flange stands 0.2 m behind the tips.
+  const Eigen::Translation3d to_flange(0, 0, -0.2);
+  grasp.tool0.grasp = grasp.tip.grasp * to_flange;
+  grasp.tool0.pre_grasp = grasp.tip.pre_grasp * to_flange;
+  grasp.tool0.retreat = grasp.tip.retreat * to_flange;
   grasp.opening = 0.05;
   grasp.width = 0.02;
+  grasp.uid = "run-1-0";
+  result.gripper = "hand";
+  result.centers = {{0, 0.2, 0.8}, {0.1, 0.2, 0.8}};
+  result.avoided = {{{0.1, 0.2, 0.8}, 0.02, 5, 65, 3, bin_picking::PickOutcome::Missed, "block"}};
   result.selection.grasps = {grasp};
+  grasp.uid.clear();
+  grasp.reason = "The approach is tilted.";
   grasp.rejection = bin_picking::GraspRejection::TiltTooLarge;
   result.selection.rejected = {grasp, grasp};
   grasp.rejection = bin_picking::GraspRejection::UndeterminedTurn;
@@ -170,6 +183,86 @@ TEST(MessageConversion, ResponseHoldsEverythingInTheOutputFrame)
   EXPECT_EQ(toPoseArray(result, output).poses.size(), 2u);
 }
 
+TEST(MessageConversion, AGraspTellsItsNameAndTheFlange)
+{
+  const auto response = toResponse(someResult(), someOutput());
+  const auto& grasp = response.grasps.at(0);
+  EXPECT_EQ(grasp.uid, "run-1-0");
+  EXPECT_EQ(grasp.gripper, "hand");
+  EXPECT_TRUE(grasp.rejection.empty());
+  const Pose T_tip_tool0 = fromMessage(grasp.grasp).inverse() * fromMessage(grasp.grasp_tool0);
+  EXPECT_TRUE(T_tip_tool0.translation().isApprox(Eigen::Vector3d(0, 0, -0.2), 1e-9));
+  EXPECT_TRUE((fromMessage(grasp.pre_grasp) * T_tip_tool0).isApprox(fromMessage(grasp.pre_grasp_tool0), 1e-9));
+  EXPECT_TRUE((fromMessage(grasp.retreat) * T_tip_tool0).isApprox(fromMessage(grasp.retreat_tool0), 1e-9));
+}
+
+TEST(MessageConversion, WhatNobodyLookedAtHasNoValue)
+{
+  const auto grasp = toResponse(someResult(), someOutput()).grasps.at(0);
+  EXPECT_FALSE(grasp.collision_checked);
+  EXPECT_TRUE(std::isnan(grasp.clearance));
+  EXPECT_TRUE(grasp.clearance_to.empty());
+  EXPECT_TRUE(std::isnan(grasp.contact.x));
+  EXPECT_FALSE(grasp.reach_checked);
+  EXPECT_TRUE(grasp.joints_grasp.empty());
+}
+
+TEST(MessageConversion, TheClosestPassageIsToldInTheOutputFrame)
+{
+  PickResult result = someResult();
+  bin_picking::Grasp& grasp = result.selection.grasps[0];
+  grasp.collision_checked = true;
+  EXPECT_TRUE(std::isinf(toResponse(result, someOutput()).grasps[0].clearance)) << "nothing is near";
+  grasp.clearance.distance = 0.004;
+  grasp.clearance.required = 0.003;
+  grasp.clearance.kind = bin_picking::ObstacleKind::BinWall;
+  grasp.clearance.body = "finger_left";
+  grasp.clearance.obstacle = "wall at +x";
+  grasp.clearance.contact_camera = {0.1, 0.2, 0.7};
+  const auto message = toResponse(result, someOutput()).grasps[0];
+  EXPECT_TRUE(message.collision_checked);
+  EXPECT_EQ(message.clearance, 0.004);
+  EXPECT_EQ(message.required_clearance, 0.003);
+  EXPECT_EQ(message.clearance_to, "finger_left to wall at +x");
+  const Eigen::Vector3d contact = someOutput().T_output_camera * Eigen::Vector3d(0.1, 0.2, 0.7);
+  EXPECT_NEAR(message.contact.x, contact.x(), 1e-12);
+  EXPECT_NEAR(message.contact.y, contact.y(), 1e-12);
+  EXPECT_NEAR(message.contact.z, contact.z(), 1e-12);
+}
+
+TEST(MessageConversion, RejectedGraspsOnRequestOnly)
+{
+  PickResult result = someResult();
+  EXPECT_TRUE(toResponse(result, someOutput()).rejected_grasps.empty());
+  // A grasp that the gripper cannot make has no pose of the flange: NaN, and no error.
+  result.selection.rejected[0].tool0.grasp.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  const auto response = toResponse(result, someOutput(), true);
+  ASSERT_EQ(response.rejected_grasps.size(), 3u);
+  EXPECT_EQ(response.rejected_grasps[0].rejection, "The approach is tilted.");
+  EXPECT_TRUE(response.rejected_grasps[0].uid.empty()) << "it was not offered, so that nobody can report it";
+  EXPECT_TRUE(std::isnan(response.rejected_grasps[0].grasp_tool0.orientation.w));
+  EXPECT_EQ(response.rejected_grasps[1].detection_index, 1u);
+}
+
+TEST(MessageConversion, SummaryCountsTheReasonsMostFrequentFirst)
+{
+  bin_picking::GraspSelection selection;
+  EXPECT_EQ(summarize(selection), "0 grasps");
+  const auto add = [&selection](bin_picking::GraspRejection rejection, int count) {
+    bin_picking::Grasp grasp;
+    grasp.rejection = rejection;
+    selection.rejected.insert(selection.rejected.end(), static_cast<std::size_t>(count), grasp);
+  };
+  add(bin_picking::GraspRejection::TiltTooLarge, 3);
+  add(bin_picking::GraspRejection::BinWallCollision, 9);
+  add(bin_picking::GraspRejection::Avoided, 2);
+  EXPECT_EQ(summarize(selection), "14 grasps: 9 bin wall collision, 3 tilt too large, 2 avoided");
+  selection.grasps.resize(1);
+  EXPECT_EQ(summarize(selection), "15 grasps: 1 allowed, 9 bin wall collision, 3 tilt too large, 2 avoided");
+  selection.rejected.clear();
+  EXPECT_EQ(summarize(selection), "1 grasp: 1 allowed");
+}
+
 TEST(MessageConversion, AnOpenTurnIsToldInThePartsFrame)
 {
   const auto response = toResponse(someResult(), someOutput());
@@ -191,6 +284,7 @@ TEST(Markers, ShowEveryDetectionInItsColour)
   model.mesh.vertices = {{0, 0, 0}, {0.05f, 0, 0}, {0, 0.05f, 0}, {0, 0, 0.05f}};
   model.mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
   bin_picking::Gripper gripper;
+  gripper.name = "hand";
   gripper.max_opening = 0.1;
   gripper.tip_heights = {{0.0, 0.2}};
   bin_picking::GripperBody palm;
@@ -199,8 +293,9 @@ TEST(Markers, ShowEveryDetectionInItsColour)
   finger.shape = bin_picking::makeBox({0, 0.01, 0.2}, {0.02, 0.02, 0.04});
   finger.placements = {{0, {0, 0, 0}, 0}, {0.1, {0, 0.05, 0}, 0}};
   gripper.bodies = {palm, finger};
-  const MarkerMaker maker({std::make_shared<const bin_picking::TrainedModel>(model)}, gripper);
-  const PickResult result = someResult();
+  const MarkerMaker maker({std::make_shared<const bin_picking::TrainedModel>(model)}, GripperSet({gripper}));
+  PickResult result = someResult();
+  result.gripper = gripper.name;
   const auto markers = maker.make(result, someOutput()).markers;
   ASSERT_FALSE(markers.empty());
   EXPECT_EQ(markers.front().action, visualization_msgs::Marker::DELETEALL);
@@ -222,10 +317,21 @@ TEST(Markers, ShowEveryDetectionInItsColour)
     {
       EXPECT_EQ(markers[i].text, markers[i].id == 0 ? "0: 0.90" : "1: 0.80, turn open");
     }
+    if (markers[i].ns == "rejected_grasp_labels")
+    {
+      EXPECT_EQ(markers[i].text, markers[i].id == 0 ? "tilt too large" : "undetermined turn");
+    }
+    if (markers[i].ns == "avoided")
+    {
+      EXPECT_EQ(markers[i].scale.x, 2 * 0.02);
+      EXPECT_TRUE(fromMessage(markers[i].pose)
+                      .translation()
+                      .isApprox(someOutput().T_output_camera * Eigen::Vector3d(0.1, 0.2, 0.8), 1e-9));
+    }
     if (markers[i].ns == "gripper" && markers[i].id == 1)
     {
       // The finger stands at its place for opening 0, moved by half the opening along Y of the tip frame.
-      const Pose T_output_tip = someOutput().T_output_camera * result.selection.grasps[0].T_camera_grasp;
+      const Pose T_output_tip = someOutput().T_output_camera * result.selection.grasps[0].tip.grasp;
       ASSERT_EQ(markers[i].points.size(), 36u);  // twelve triangles
       const Pose T_tip_marker = T_output_tip.inverse() * fromMessage(markers[i].pose);
       for (const auto& p : markers[i].points)
@@ -235,8 +341,9 @@ TEST(Markers, ShowEveryDetectionInItsColour)
       }
     }
   }
-  const std::map<std::string, int> expected = {{"parts", 2}, {"labels", 2}, {"rejected", 1},
-                                               {"bin", 1},   {"grasp", 1},  {"gripper", 2}};
+  const std::map<std::string, int> expected = {
+      {"parts", 2}, {"labels", 2},  {"rejected", 1},        {"bin", 1},     {"grasp", 1},
+      {"path", 1},  {"gripper", 2}, {"rejected_grasps", 2}, {"avoided", 1}, {"rejected_grasp_labels", 2}};
   EXPECT_EQ(count, expected);
 }
 

@@ -51,8 +51,8 @@ public:
     bool accept_undetermined_turn = false;  ///< also parts whose turn about an axis is not known, at the stated pose
     bool check_collision = true;
     bool check_reach = true;
-    /// Whether an attempt at a part with its middle there (camera frame) is to be avoided, and why; empty: none is.
-    std::function<std::string(const Eigen::Vector3d& center_camera)> avoid;
+    /// Why a detection is to be left alone, one sentence; an empty text: it is not. No function: none is.
+    std::function<std::string(std::size_t detection_index)> avoid;
     std::size_t max_grasps = 0;  ///< fewer than the parameter; 0: that many
   };
 

@@ -121,8 +121,7 @@ bool checkDetection(Grasp& grasp, const GraspSurroundings& s)
                       "; the caller does not accept that (accept_undetermined_turn).");
   if (s.request.avoid)
   {
-    const TrainedModel& model = *s.scene.models[detection.model_index];
-    const std::string why = s.request.avoid(detection.T_camera_object * model.center);
+    const std::string why = s.request.avoid(grasp.detection_index);
     if (!why.empty())
       return reject(grasp, GraspRejection::Avoided, why);
   }

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+// The example programs empty a small bin, from the first answer to BIN_EMPTY, and the picture of the arm is the arm.
+#include <bin_picking_perception/TakePart.h>
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+#include <std_srvs/Trigger.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "bin_picking_perception/robot/kinematics.hpp"
+#include "bin_picking_perception/robot/urscript.hpp"
+#include "pose_conversion.hpp"
+
+namespace
+{
+using bin_picking_perception::TakePart;
+
+struct Run
+{
+  int exit_code = -1;
+  std::string output;
+};
+
+Run run(const std::string& command)
+{
+  Run result;
+  FILE* const pipe = popen((command + " 2>&1").c_str(), "r");
+  if (!pipe)
+    return result;
+  std::array<char, 256> buffer{};
+  while (std::fgets(buffer.data(), buffer.size(), pipe))
+    result.output += buffer.data();
+  result.exit_code = pclose(pipe);
+  return result;
+}
+
+unsigned partsInTheBin()
+{
+  TakePart call;
+  call.request.select = TakePart::Request::BY_ID;
+  call.request.id = -1;  // no part has that
+  EXPECT_TRUE(ros::service::call("virtual_cell/take_part", call));
+  EXPECT_EQ(call.response.outcome, TakePart::Response::NO_SUCH_PART) << call.response.message;
+  return call.response.num_left;
+}
+
+void expectEmptied(const std::string& program)
+{
+  const Run result = run(program + " _speed:=100 _max_fruitless:=10");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find(" attempts: 5 picked"), std::string::npos) << result.output;
+  EXPECT_EQ(partsInTheBin(), 0u) << result.output;
+  // Each line of a grasp can be sent to the robot: it is a pose within its reach.
+  const std::size_t script = result.output.find("movel(");
+  ASSERT_NE(script, std::string::npos) << result.output;
+  const auto pose = bin_picking::fromUrScript(result.output.substr(script));
+  EXPECT_LT(pose.translation().norm(), 1.0) << result.output;
+  EXPECT_LT(pose.translation().x(), 0) << "the bin is in front of base_link, behind base";
+}
+
+TEST(PickingLoop, TheProgramInCppEmptiesTheBin) { expectEmptied(BIN_PICKING_PROGRAM_DIR "/ur5e_picker"); }
+
+TEST(PickingLoop, TheProgramInPythonEmptiesTheBin)
+{
+  std_srvs::Trigger refill;
+  ASSERT_TRUE(ros::service::call("virtual_cell/refill", refill));
+  ASSERT_TRUE(refill.response.success) << refill.response.message;
+  expectEmptied(BIN_PICKING_SOURCE_DIR "/scripts/ur5e_picker.py");
+}
+
+TEST(PickingLoop, ThePictureOfTheArmStandsWhereItsKinematicsSay)
+{
+  const bin_picking::Kinematics arm(
+      bin_picking::loadRobot(std::string(BIN_PICKING_SOURCE_DIR) + "/config/robots/ur5e.yaml"));
+  bin_picking::Joints joints;
+  joints << 0.3, -1.1, 1.7, -2.2, -1.4, 0.8;
+  sensor_msgs::JointState state;
+  state.name.assign(arm.robot().joint_names.begin(), arm.robot().joint_names.end());
+  state.position.assign(joints.data(), joints.data() + joints.size());
+
+  ros::NodeHandle nh;
+  ros::Publisher publisher = nh.advertise<sensor_msgs::JointState>("joint_states", 1);
+  tf2_ros::Buffer buffer;
+  tf2_ros::TransformListener listener(buffer);
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(30);
+  bin_picking::Pose difference = bin_picking::Pose::Identity();
+  double error = 1;
+  while (error > 1e-6 && ros::WallTime::now() < end)
+  {
+    state.header.stamp = ros::Time::now();
+    publisher.publish(state);
+    ros::WallDuration(0.1).sleep();
+    if (!buffer.canTransform("base", "tool0", ros::Time(0)))
+      continue;
+    const auto transform = buffer.lookupTransform("base", "tool0", ros::Time(0)).transform;
+    difference = arm.forward(joints).inverse() * bin_picking_ros::fromMessage(transform);
+    error = (difference.matrix() - bin_picking::Pose::Identity().matrix()).cwiseAbs().maxCoeff();
+  }
+  EXPECT_LT(error, 1e-6) << difference.matrix();
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "picking_loop_test");
+  ros::NodeHandle nh;
+  ros::AsyncSpinner spinner(2);
+  spinner.start();
+  return RUN_ALL_TESTS();
+}
