@@ -23,10 +23,11 @@ using Response = Grip::Response;
 const std::string SOURCE_DIR = BIN_PICKING_SOURCE_DIR;
 const std::string GRIPPER = SOURCE_DIR + "/config/grippers/parallel_80mm.yaml";
 
-/// One cube of 30 mm on the floor.
+/// One cube of 30 mm on the floor of a bin so wide that no wall is near.
 std::map<std::string, XmlRpc::XmlRpcValue> oneCube(std::map<std::string, XmlRpc::XmlRpcValue> more = {})
 {
   more.insert({{"parts", SOURCE_DIR + "/test/ros/cube"}, {"counts", 1}, {"gripper", GRIPPER}});
+  more.insert({{"layout/bin_length", 0.8}, {"layout/bin_width", 0.8}});
   return more;
 }
 
@@ -67,9 +68,6 @@ TEST(Grip, TakesThePartBetweenTheFingers)
 {
   CellUnderTest cell("take", oneCube());
   const SceneTruth truth = *cell.expose().truth;
-  const Pose T_bin_object = binInCamera().inverse() * fromMessage(truth.instances.at(0).pose);
-  ASSERT_LT(std::abs(T_bin_object.translation().x()), 0.13) << "too near to a wall for this test: take another seed";
-  ASSERT_LT(std::abs(T_bin_object.translation().y()), 0.08) << "too near to a wall for this test: take another seed";
   Request request = fromAbove(fromMessage(truth.instances[0].pose));
   request.part = "cube";
   request.part_pose.header.frame_id = "camera";
