@@ -45,7 +45,12 @@ unsigned partsInTheBin()
   TakePart call;
   call.request.select = TakePart::Request::BY_ID;
   call.request.id = -1;  // no part has that
-  EXPECT_TRUE(ros::service::call("virtual_cell/take_part", call));
+  EXPECT_TRUE(ros::service::waitForService("virtual_cell/take_part", ros::Duration(120)));
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(120);
+  do  // the bin is being filled
+    EXPECT_TRUE(ros::service::call("virtual_cell/take_part", call));
+  while (call.response.outcome == TakePart::Response::NOT_READY && ros::WallDuration(0.2).sleep() &&
+         ros::WallTime::now() < end);
   EXPECT_EQ(call.response.outcome, TakePart::Response::NO_SUCH_PART) << call.response.message;
   return call.response.num_left;
 }
