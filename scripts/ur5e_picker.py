@@ -109,8 +109,9 @@ class Picker:
 
     def summary(self):
         causes = "".join(f", {count} {cause}" for cause, count in sorted(self._causes.items()))
+        left = f"{self._num_left} left" if self._num_attempts else "nothing tried"
         return (f"{self._num_attempts} attempts: {self._num_picked} picked{causes};"
-                f" {self._num_left} left after {time.monotonic() - self._start:.0f} s")
+                f" {left} after {time.monotonic() - self._start:.0f} s")
 
     def _ask(self):
         """The first answer comes when models, bin and tf are there; from then on, every error is one."""

@@ -104,7 +104,8 @@ public:
     std::printf("%d attempts: %d picked", num_attempts_, num_picked_);
     for (const auto& [cause, count] : causes_)
       std::printf(", %d %s", count, cause.c_str());
-    std::printf("; %u left after %.0f s\n", num_left_, (ros::WallTime::now() - start_).toSec());
+    const std::string left = num_attempts_ > 0 ? std::to_string(num_left_) + " left" : "nothing tried";
+    std::printf("; %s after %.0f s\n", left.c_str(), (ros::WallTime::now() - start_).toSec());
   }
 
 private:
