@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/common/parameters.hpp"
@@ -277,5 +278,46 @@ TEST(PartFile, documentationAndDemoPartsAreReadable)
     EXPECT_NO_THROW(checkExpectedSize(part, inspectMesh(loadMesh(part.mesh_file, part.mesh_unit)).size));
   }
 }
+TEST(PartFile, AGraspIsCopiedAroundAnAxis)
+{
+  TemporaryFolder folder;
+  folder.write("part.yaml", with("    spin_tolerance_deg: 180\n",
+                                 "    around: {axis: [0, 0, 2], origin: [0.01, 0, 0], from_deg: -90, to_deg: 180, "
+                                 "step_deg: 90}\n"));
+  const auto grasps = loadPart(folder.path()).grasps;
+  ASSERT_EQ(grasps.size(), 5u);
+  EXPECT_EQ(grasps[0].id, "top");
+  const Vector3d origin(0.01, 0, 0);
+  for (const auto& [index, id, angle] :
+       {std::tuple(1u, "top@-90", -90), std::tuple(2u, "top@90", 90), std::tuple(3u, "top@180", 180)})
+  {
+    const GraspDefinition& copy = grasps[index];
+    EXPECT_EQ(copy.id, id);
+    const Eigen::AngleAxisd turn(angle * M_PI / 180, Vector3d::UnitZ());
+    EXPECT_TRUE(copy.T_object_tip.linear().isApprox(turn * grasps[0].T_object_tip.linear(), 1e-12));
+    const Vector3d arm = grasps[0].T_object_tip.translation() - origin;
+    EXPECT_TRUE(copy.T_object_tip.translation().isApprox(origin + turn * arm, 1e-12));
+    EXPECT_EQ(copy.width, grasps[0].width);
+    EXPECT_EQ(copy.priority, grasps[0].priority);
+  }
+  EXPECT_EQ(grasps[4].id, "side");
+}
+
+TEST(PartFile, ACircleOfGraspsClosesOnceAndItsAnglesAreChecked)
+{
+  const auto grasps = [](const std::string& around) {
+    TemporaryFolder folder;
+    folder.write("part.yaml", with("    spin_tolerance_deg: 180\n", "    around: " + around + "\n"));
+    return loadPart(folder.path()).grasps;
+  };
+  EXPECT_EQ(grasps("{axis: [0, 0, 1], from_deg: 0, to_deg: 360, step_deg: 120}").size(), 4u) << "0, 120, 240, and side";
+  for (const char* const wrong :
+       {"{axis: [0, 0, 1], from_deg: 90, to_deg: 0, step_deg: 30}",
+        "{axis: [0, 0, 1], from_deg: 0, to_deg: 90, step_deg: 0}",
+        "{axis: [0, 0, 0], from_deg: 0, to_deg: 90, step_deg: 30}", "{axis: [0, 0, 1], from_deg: 0, to_deg: 90}",
+        "{axis: [0, 0, 1], from_deg: 0, to_deg: 90, step_deg: 30, centre: [0, 0, 0]}"})
+    EXPECT_THROW(grasps(wrong), FileError) << wrong;
+}
+
 }  // namespace
 }  // namespace bin_picking

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <cmath>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "part_file.hpp"
 
@@ -64,7 +66,7 @@ double readTolerance(const YamlMap& yaml, const std::string& key, double max_deg
 GraspDefinition readGrasp(const YamlMap& yaml)
 {
   yaml.allowKeys({"id", "position", "rpy_deg", "approach", "closing", "width", "opening", "approach_distance",
-                  "retreat_distance", "priority", "symmetric", "tilt_tolerance_deg", "spin_tolerance_deg"});
+                  "retreat_distance", "priority", "symmetric", "tilt_tolerance_deg", "spin_tolerance_deg", "around"});
   GraspDefinition grasp;
   grasp.id = yaml.text("id");
   grasp.T_object_tip.linear() = readRotation(yaml);
@@ -84,6 +86,45 @@ GraspDefinition readGrasp(const YamlMap& yaml)
   grasp.spin_tolerance = readTolerance(yaml, "spin_tolerance_deg", 180);
   return grasp;
 }
+
+/// Angles in degrees, 0 excepted: that is the grasp as written.
+std::vector<int> readAngles(const YamlMap& around)
+{
+  const int from = around.integer("from_deg");
+  const int to = around.integer("to_deg");
+  const int step = around.integer("step_deg");
+  if (from < -360 || to > 360 || from > to || to - from >= 360 + step)
+    around.fail("from_deg", "the angles of 'around' go from " + std::to_string(from) + " to " + std::to_string(to) +
+                                " degrees, but they must rise, lie in [-360, 360] and span one turn at most");
+  if (step < 1)
+    around.fail("step_deg",
+                "'step_deg' is " + std::to_string(step) + ", but it must be a whole number of degrees, at least 1");
+  std::vector<int> angles;
+  for (int angle = from; angle <= to && angle - from < 360; angle += step)
+    if (angle != 0)
+      angles.push_back(angle);
+  return angles;
+}
+
+/// The grasp as written and its copies turned about an axis of the part, where the part is round: named id@angle.
+std::vector<GraspDefinition> withCopiesAround(const GraspDefinition& written, const YamlMap& yaml)
+{
+  std::vector<GraspDefinition> grasps = {written};
+  if (!yaml.has("around"))
+    return grasps;
+  const YamlMap around = yaml.map("around");
+  around.allowKeys({"axis", "origin", "from_deg", "to_deg", "step_deg"});
+  const Eigen::Vector3d origin = around.has("origin") ? around.vector("origin", "m") : Eigen::Vector3d::Zero();
+  const Symmetry::Axis axis{around.direction("axis"), origin};
+  for (const int angle : readAngles(around))
+  {
+    GraspDefinition copy = written;
+    copy.id += "@" + std::to_string(angle);
+    copy.T_object_tip = rotationAbout(axis, angle * M_PI / 180) * written.T_object_tip;
+    grasps.push_back(copy);
+  }
+  return grasps;
+}
 }  // namespace
 
 std::vector<GraspDefinition> readGrasps(const YamlMap& part)
@@ -91,11 +132,12 @@ std::vector<GraspDefinition> readGrasps(const YamlMap& part)
   std::vector<GraspDefinition> grasps;
   std::set<std::string> ids;
   for (const YamlMap& entry : part.list("grasps"))
-  {
-    grasps.push_back(readGrasp(entry));
-    if (!ids.insert(grasps.back().id).second)
-      entry.fail("id", "the grasp id '" + grasps.back().id + "' is used twice; ids must differ");
-  }
+    for (const GraspDefinition& grasp : withCopiesAround(readGrasp(entry), entry))
+    {
+      grasps.push_back(grasp);
+      if (!ids.insert(grasp.id).second)
+        entry.fail("id", "the grasp id '" + grasp.id + "' is used twice; ids must differ");
+    }
   return grasps;
 }
 }  // namespace bin_picking
