@@ -138,10 +138,21 @@ private:
     now_ += planned.grasps.empty() ? WAIT : CYCLE;
     avoided_.tick(now_);
     if (planned.grasps.empty())
+    {
+      if (place_.settings.shake)
+        shake();
       return false;
+    }
     const PlannedGrasp& best = planned.grasps.front();
     attempt(best, found.detections[best.detection], scan);
     return true;
+  }
+
+  void shake()
+  {
+    ++result_.shakes;
+    cell_.shake(result_.seed * 1000 + 500 + static_cast<std::uint32_t>(result_.shakes));
+    avoided_.clear();
   }
 
   void attempt(const PlannedGrasp& grasp, const Detection& detection, const CellScan& scan)

@@ -35,6 +35,7 @@ struct Emptying
 {
   std::uint32_t seed = 0;
   int filled = 0;
+  int shakes = 0;  ///< where nothing was allowed any more
   std::vector<Attempt> attempts;
   std::map<std::string, int> left;  ///< why the parts that are left were not taken, or why it ended
   std::vector<double> detection_seconds;
@@ -44,7 +45,8 @@ struct Emptying
 
 struct EmptyingSettings
 {
-  int max_fruitless = 4;  ///< clouds in a row without an allowed grasp
+  int max_fruitless = 12;  ///< clouds in a row without an allowed grasp, or shakes without a part taken between them
+  bool shake = true;      ///< the bin is shaken where nothing is allowed
   int max_failures = 10;  ///< attempts in a row that fail, after which the bin is given up
   int max_picks = 0;      ///< attempts in one bin; 0: no limit
   bool truth = false;     ///< detections are replaced by the true poses

@@ -39,6 +39,7 @@ json toJson(const Emptying& bin)
   json result = {
       {"seed", bin.seed},
       {"filled", bin.filled},
+      {"shakes", bin.shakes},
       {"left", bin.left},
       {"attempts", json::array()},
       {"seconds",

@@ -40,6 +40,7 @@ Syntax syntax()
            {"--failures", "N", Values::One, "give up a bin after so many failures in a row (default 10)"},
            {"--sensor", "NAME", Values::One, "structured_light (default), stereo or ideal"},
            {"--preset", "NAME", Values::One, "of the detector: paper, fast (default) or accurate"},
+           {"--no-shake", "", Values::None, "leave what cannot be taken (default: shake the bin and go on)"},
            {"--truth", "", Values::None, "true poses in place of detections: only grasp planning can fail"},
            {"--threads", "N", Values::One, "0: all processors (default)"},
            {"--models", "DIR", Values::One, "trained models are kept there (default picking_models)"},
@@ -90,6 +91,7 @@ Bench benchFrom(const Arguments& arguments)
   if (arguments.has("--set"))
     applyAssignments(arguments, visitor(bench.grasps));
   bench.settings.truth = arguments.has("--truth");
+  bench.settings.shake = !arguments.has("--no-shake");
   bench.settings.max_failures = parseInteger(arguments.value("--failures", "10"), "--failures", 1, 1000000);
   bench.gripper = loadGripper(arguments.value("--gripper"));
   if (arguments.has("--robot"))

@@ -55,6 +55,14 @@ std::string ratioText(const Ratio& ratio)
   return percent(ratio.value()) + " % [" + percent(interval.low) + ", " + percent(interval.high) + "]";
 }
 
+int shakesOf(const PartStudy& part)
+{
+  int shakes = 0;
+  for (const Emptying& bin : part.bins)
+    shakes += bin.shakes;
+  return shakes;
+}
+
 int leftIn(const PartStudy& part)
 {
   int left = 0;
@@ -66,8 +74,9 @@ int leftIn(const PartStudy& part)
 
 void writeTable(std::ostream& out, const Study& study)
 {
-  out << "| part | bins | picks | taken | success, 95 % interval | collisions called free | parts left | detection, ms "
-         "| grasps, ms | judge, ms |\n|---|---|---|---|---|---|---|---|---|---|\n";
+  out << "| part | bins | picks | taken | success, 95 % interval | collisions called free | shakes | parts left | "
+         "detection, ms "
+         "| grasps, ms | judge, ms |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const PartStudy& part : study.parts)
   {
     const std::vector<Attempt> attempts = attemptsOf(part);
@@ -75,12 +84,12 @@ void writeTable(std::ostream& out, const Study& study)
     const auto called_free =
         std::count_if(attempts.begin(), attempts.end(), [](const Attempt& a) { return a.called_free; });
     out << "| " << part.name << " | " << part.bins.size() << " | " << taken.total << " | " << taken.hits << " | "
-        << ratioText(taken) << " | " << called_free << " | " << leftIn(part) << " | "
+        << ratioText(taken) << " | " << called_free << " | " << shakesOf(part) << " | " << leftIn(part) << " | "
         << timeText(part, &Emptying::detection_seconds) << " | " << timeText(part, &Emptying::planning_seconds) << " | "
         << timeText(part, &Emptying::judging_seconds) << " |\n";
   }
-  out << "\nTimes: median / 95th percentile per cloud or grip. Left: parts in the bin when nothing was allowed any "
-         "more.\n";
+  out << "\nTimes: median / 95th percentile per cloud or grip. Shakes: nothing was allowed, the parts fell "
+         "anew. Left: parts in the bin at the end.\n";
 }
 
 void writeCounts(std::ostream& out, const std::map<std::string, int>& counts)

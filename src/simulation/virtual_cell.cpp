@@ -110,6 +110,15 @@ bool VirtualCell::dropAgain(int id, std::uint32_t seed)
   return true;
 }
 
+void VirtualCell::shake(std::uint32_t seed)
+{
+  std::vector<int> counts(parts_.size(), 0);
+  for (const Body& body : bodies())
+    ++counts[static_cast<std::size_t>(body.shape)];
+  clear();
+  fill(counts, seed);
+}
+
 /// The physics works with bodies a little simpler than the parts. Where that let two parts overlap, the upper one is
 /// dropped again.
 void VirtualCell::separate(std::uint32_t seed)

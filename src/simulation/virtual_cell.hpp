@@ -89,6 +89,8 @@ public:
   /// See BinPhysics.
   bool remove(int id) { return physics_.remove(id); }
   bool dropAgain(int id, std::uint32_t seed);
+  /// Shakes the bin up: all that lies in it falls anew, under new ids. \throws as fill()
+  void shake(std::uint32_t seed);
   void clear() { physics_.clear(); }
 
   /// Ids, kinds and poses T_bin_object of what lies in the bin.

@@ -11,7 +11,7 @@ namespace bin_picking
 /// Limits on the grasps that are offered.
 struct GraspParameters
 {
-  double max_tilt = 0.785398;
+  double max_tilt = 1.047198;
   double min_matching_rate = 0.85;  // the paper: above 85 % the robot succeeds
   int continuous_symmetry_steps = 12;
   int max_grasps = 20;

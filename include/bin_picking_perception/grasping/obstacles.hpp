@@ -22,13 +22,13 @@ struct ObstacleParameters
 {
   double bin_clearance = 0.003;
   // Chosen by benchmark/grasp_collision.cpp: no grasp of its bins is called free that gets 0.5 mm into a part.
-  double surface_clearance = 0.0005;
-  double part_clearance = 0.0005;
-  double target_clearance = 0.0;
+  double surface_clearance = 0.001;
+  double part_clearance = 0.001;
+  double target_clearance = 0.0015;
   double unseen_entry = 0.008;
   double shadow_entry = 0.012;
   double target_tolerance = 0.003;
-  double max_drag = 0.001;
+  double max_drag = 0.0005;
 
   void visit(ParameterVisitor& v);
 };
