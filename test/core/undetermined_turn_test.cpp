@@ -78,10 +78,12 @@ TEST(UndeterminedTurn, WhoAcceptsNoneGetsAnAmbiguousPose)
   EXPECT_FALSE(result.rejected[0].undetermined_turn);
 }
 
-TEST(UndeterminedTurn, AHiddenBranchIsMoreThanATurn)
+namespace
 {
-  // The run lies across the view; the branch points aside, below a plate that hides half. It may as well point away
-  // from the camera, where the run hides it.
+/// The run lies across the view; the branch points aside, and where a plate hides half of the tee, it may as well point
+/// away from the camera, where the run hides it.
+DetectionResult detectTee(bool is_branch_hidden)
+{
   Pose truth = Pose::Identity();
   truth.translation().z() = 0.6;
   truth.rotate(Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()));
@@ -91,10 +93,17 @@ TEST(UndeterminedTurn, AHiddenBranchIsMoreThanATurn)
   TriangleMesh plate;
   plate.vertices = {{-0.1f, 0.002f, 0.52f}, {0.1f, 0.002f, 0.52f}, {0.1f, 0.1f, 0.52f}, {-0.1f, 0.1f, 0.52f}};
   plate.triangles = {{0, 1, 2}, {0, 2, 3}};
-  renderer.draw(plate, Pose::Identity(), 2);
+  if (is_branch_hidden)
+    renderer.draw(plate, Pose::Identity(), 2);
   Detector::Request request;
   request.bin = wideBin();
-  const DetectionResult result = Detector({teeModel()}, {}).detect(renderer.grid(), request);
+  return Detector({teeModel()}, {}).detect(renderer.grid(), request);
+}
+}  // namespace
+
+TEST(UndeterminedTurn, AHiddenBranchIsMoreThanATurn)
+{
+  const DetectionResult result = detectTee(true);
   EXPECT_TRUE(result.detections.empty()) << result.message;
   bool ambiguous = false;
   for (const Detection& rejected : result.rejected)
@@ -103,6 +112,27 @@ TEST(UndeterminedTurn, AHiddenBranchIsMoreThanATurn)
     ambiguous = ambiguous || rejected.rejection.find("turn_margin is") == 0;
   }
   EXPECT_TRUE(ambiguous) << result.message;
+}
+
+TEST(UndeterminedTurn, HalfAMarginIsEnoughWhereAllElseIsSure)
+{
+  const double margin = VerificationParameters().min_turn_margin;
+  int sure = 0;
+  int unsure = 0;
+  for (const bool is_hidden : {true, false})
+  {
+    const DetectionResult result = detectTee(is_hidden);
+    for (const auto* poses : {&result.detections, &result.rejected})
+      for (const Detection& detection : *poses)
+        for (const Criterion& criterion : detection.criteria)
+          if (criterion.name == "turn_margin")
+          {
+            EXPECT_EQ(criterion.required, detection.score >= 0.96 ? margin / 2 : margin) << detection.score;
+            (detection.score >= 0.96 ? sure : unsure) += 1;
+          }
+  }
+  EXPECT_GT(sure, 0);
+  EXPECT_GT(unsure, 0);
 }
 
 TEST(UndeterminedTurn, ProgramsAreToldIt)

@@ -31,7 +31,7 @@ struct VerificationParameters
   double min_surface_share = 0.8;
   double max_bin_penetration = 0.006;
   double overlap = 0.35;
-  int max_refined = 48;
+  int max_refined = 96;
   int fruitless_rounds = 2;
 
   void visit(ParameterVisitor& v);

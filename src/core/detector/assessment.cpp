@@ -84,6 +84,13 @@ void require(Detection& detection, const Criterion& criterion)
   detection.criteria.push_back(criterion);
 }
 
+/// A small margin is no doubt where all else is sure: wrong poses leave more than their turn unexplained.
+double requiredTurnMargin(double score, const VerificationParameters& parameters)
+{
+  constexpr double SURE_SCORE = 0.96;
+  return score >= SURE_SCORE ? parameters.min_turn_margin / 2 : parameters.min_turn_margin;
+}
+
 void judge(Detection& detection, const PoseQuality& quality, const VerificationParameters& parameters)
 {
   require(detection, {"matching_rate", detection.matching_rate, parameters.min_matching_rate, false});
@@ -95,7 +102,7 @@ void judge(Detection& detection, const PoseQuality& quality, const VerificationP
   require(detection, {"surface_share", quality.surface_share, parameters.min_surface_share, false});
   require(detection, {"outline_share", quality.outline_share, parameters.min_outline_share, false});
   if (std::isfinite(quality.turn_margin))
-    require(detection, {"turn_margin", quality.turn_margin, parameters.min_turn_margin, false});
+    require(detection, {"turn_margin", quality.turn_margin, requiredTurnMargin(detection.score, parameters), false});
   require(detection, {"bin_penetration", quality.bin_penetration, parameters.max_bin_penetration, true});
   require(detection, {"score", detection.score, parameters.min_score, false});
 }

@@ -41,7 +41,8 @@ void VerificationParameters::visit(ParameterVisitor& v)
           unmeasured_weight);
   v.field({"min_turn_margin", "",
            "a pose is ambiguous if another one, turned so that most of the part looks the same, is "
-           "contradicted by less than this more, in squares of a leaf's edge; 0 accepts guesses",
+           "contradicted by less than this more (half of it if its score is 0.96 or better), in squares of a leaf's "
+           "edge; 0 accepts guesses",
            0, MOST_MARGIN},
           min_turn_margin);
   v.field({"accept_undetermined_turns", "",
