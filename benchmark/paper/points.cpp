@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <cmath>
+
+#include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/evaluation/pose_error.hpp"
+#include "bin_picking_perception/refinement/verification.hpp"
+#include "experiments.hpp"
+#include "pictures.hpp"
+#include "point_scene.hpp"
+
+namespace bin_picking::paper
+{
+namespace
+{
+constexpr std::size_t RATED_POINTS = 4000;  // of the object in the scene, for Equation 9
+
+std::vector<Eigen::Vector3f> thinned(const std::vector<Eigen::Vector3f>& points, std::size_t most)
+{
+  std::vector<Eigen::Vector3f> kept;
+  const std::size_t step = (points.size() + most - 1) / most;
+  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, step))
+    kept.push_back(points[i]);
+  return kept;
+}
+
+/// Equation 9 with the points that truly are the object's, so that no method chooses its own denominator.
+void rate(Json& run, const Detection& found, const TrainedModel& model, const PointScene& scene, double match_distance)
+{
+  run["rate"] =
+      matchingRate(model.surface, found.T_camera_object, thinned(scene.of_object, RATED_POINTS), match_distance);
+  run["claimed_rate"] = found.matching_rate;
+  run["add"] = averageDistance(model.points.points, found.T_camera_object, scene.T_camera_object) / model.diameter;
+  const PoseError error = poseError(found.T_camera_object, scene.T_camera_object, {}, model.center);
+  run["translation"] = error.translation;
+  run["rotation"] = error.rotation;
+}
+
+Json runMethod(const Method& method, const std::shared_ptr<const TrainedModel>& model, const PointScene& scene,
+               bool scene_is_part, Detection& best)
+{
+  const Detector detector({model}, method.detector);
+  const double begin = processorSeconds();
+  const DetectionResult result = detector.match(scene.points, scene_is_part);
+  Json run = {{"ms", 1e3 * (processorSeconds() - begin)},
+              {"seen_share", scene.seen_share},
+              {"visible_share", scene.visible_share}};
+  for (const char* stage : {"votes", "pairs", "references", "samples"})
+    run[stage] = countOf(result, stage);
+  // Whether a pose is good enough is for the figures to say, not for a threshold of the detector.
+  const std::vector<Detection>& poses = result.detections.empty() ? result.rejected : result.detections;
+  if (poses.empty())
+    return run;
+  best = poses.front();
+  rate(run, best, *model, scene, method.detector.verification.match_distance);
+  return run;
+}
+
+void drawResult(const std::string& file, const PointScene& scene, const TrainedModel& model, const Detection& found)
+{
+  const OrientedPoints placed = transformed(model.surface, found.T_camera_object);
+  saveCloudPicture({{scene.points, {0.95f, 0.95f, 0.95f}}, {placed, {0.1f, 0.75f, 0.25f}}}, file);
+}
+}  // namespace
+
+Json runPoints(const Json& specification, const std::string& folder)
+{
+  std::vector<PointObject> objects;
+  for (const Json& object : specification.at("objects"))
+    objects.push_back(readObject(object, folder));
+  const bool given = specification.at("scene").is_object();
+  const SceneKind kind = given ? SceneKind::Clutter : parseSceneKind(specification.at("scene").get<std::string>());
+  const Executor executor(0);
+  Models models(executor, specification.value("models", ""));
+  Json result = {{"models", Json::array()}, {"runs", Json::array()}, {"resolution", objects.front().resolution}};
+  std::vector<Method> methods;
+  for (const Json& json : specification.at("methods"))
+  {
+    methods.push_back(readMethod(json));
+    methods.back().detector.num_threads = 1;
+    result["models"].push_back(describe(*models.get(objects.front().part, methods.back())));
+  }
+  const int trials = given ? 1 : specification.value("trials", 3);
+  const auto noises = specification.value("noise", std::vector<double>{0.0});
+  for (const double noise : noises)
+    for (int trial = 0; trial < trials; ++trial)
+    {
+      const auto seed = static_cast<std::uint32_t>(specification.value("seed", 1) + trial);
+      const PointScene scene = given ? readPointScene(specification.at("scene"), objects.front())
+                                     : makePointScene(objects, kind, noise, seed);
+      for (std::size_t m = 0; m < methods.size(); ++m)
+      {
+        const auto model = models.get(objects.front().part, methods[m]);
+        Detection best;
+        Json run = runMethod(methods[m], model, scene, kind == SceneKind::Whole, best);
+        run["method"] = m;
+        run["noise"] = noise;
+        run["trial"] = trial;
+        if (trial == 0 && noise == noises.front() && specification.contains("picture") && run.contains("rate"))
+          drawResult(specification.at("picture").get<std::string>() + "_" + std::to_string(m) + ".png", scene, *model,
+                     best);
+        result["runs"].push_back(run);
+      }
+    }
+  return result;
+}
+}  // namespace bin_picking::paper
