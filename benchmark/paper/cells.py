@@ -54,10 +54,11 @@ def in_inverse_millimetres(config):
 
 def retrieval_methods(config):
     other = in_inverse_millimetres(config)
+    unweighted = {**TOP_CLUSTER, "voting/weight": "1"}  # the same votes as feature cur_ppf_unweighted, one training less
     return [method("PPF", config, "ppf", TOP_CLUSTER),
-            method("Cur-PPF (unweighted)", config, "cur_ppf_unweighted", TOP_CLUSTER),
+            method("Cur-PPF (unweighted)", config, "cur_ppf", unweighted),
             method("Cur-PPF", config, "cur_ppf", TOP_CLUSTER),
-            method("Cur-PPF (unweighted), 1/mm", config, "cur_ppf_unweighted", TOP_CLUSTER, other),
+            method("Cur-PPF (unweighted), 1/mm", config, "cur_ppf", unweighted, other),
             method("Cur-PPF, 1/mm", config, "cur_ppf", TOP_CLUSTER, other)]
 
 
@@ -192,12 +193,10 @@ class Plan:
                          simulate=[str(self.package / "config" / "parts" / part), count, 9000 + k, []],
                          methods=bin_methods(config),
                          **({"picture": self.picture(f"bins_{part}")} if k == 0 else {}))
-        tube = str(self.package / "config" / "parts" / "three_way_tube")
-        config = self.config("three_way_tube")
-        self.add("segmentation", "figures", "Figure 5", kind="segmentation", part="three_way_tube",
-                 simulate=[tube, PARTS["three_way_tube"][0], 9000, []],
-                 method=method("Cur-PPF", config, "cur_ppf", {"icp/method": "none"}),
-                 picture=self.picture("segmentation"))
+            self.add(f"segmentation_{part}", "figures", f"Figures 5 and 16: {part}", kind="segmentation", part=part,
+                     simulate=[str(self.package / "config" / "parts" / part), count, 9000, []],
+                     method=method("Cur-PPF", config, "cur_ppf", {"icp/method": "none"}),
+                     picture=self.picture(f"segmentation_{part}"))
         for part in PARTS:
             self.add(f"curvature_{part}", "figures", f"Figure 7: {part}", kind="curvature",
                      object={"part": str(self.package / "config" / "parts" / part)},

@@ -101,11 +101,11 @@ def curvature(out, results, names, title, note):
     return Figure(title, note, items)
 
 
-def segmentation(out):
+def segmentation(out, part, title):
     captions = ["(a) one side of the model", "(b) its gray picture", "(c) the scene", "(d) gray from depth",
                 "(e) watershed segments", "(f) candidate targets", "(g) their points"]
-    return Figure("Figure 5: segmentation and candidate targets", "A virtual bin of 25 tubes, Algorithm 1.", pictures(
-        out, [(caption, f"segmentation_{letter}.png") for caption, letter in zip(captions, "abcdefg")]))
+    return Figure(title, "A virtual bin, Algorithm 1, pixel and contour counts.", pictures(
+        out, [(caption, f"segmentation_{part}_{letter}.png") for caption, letter in zip(captions, "abcdefg")]))
 
 
 def process(out, results):
@@ -133,7 +133,8 @@ def laser(out, results):
 def figures_of(results, plan, out):
     names = [name for name, _, _ in cells.MODELS]
     all_figures = [
-        charts(results), segmentation(out),
+        charts(results),
+        segmentation(out, "three_way_tube", "Figure 5: segmentation and candidate targets, three-way tube"),
         curvature(out, results, cells.PARTS, "Figure 7: curvature of the real parts",
                   "Mean curvature in 1/m at a radius of 10 mm; ranges of Section 3.2.1."),
         overlays(out, results, "whole", "PPF", "Figure 10: PPF on the Retrieval models"),
@@ -142,5 +143,6 @@ def figures_of(results, plan, out):
                   "Normal variation (no unit) at a radius of 15 mm; blue: low range, red: high range."),
         overlays(out, results, "whole", "Cur-PPF", "Figure 13: Cur-PPF, weighted"),
         laser(out, results), process(out, results),
+        segmentation(out, "upright_column", "Figure 16, o to r: candidate targets of the upright column"),
         overlays(out, results, "clutter", "Cur-PPF", "Beyond the paper: one view in clutter, Cur-PPF")]
     return [figure for figure in all_figures if figure.items]

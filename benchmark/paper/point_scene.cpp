@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "point_scene.hpp"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -66,9 +68,11 @@ double meshResolution(const std::vector<Eigen::Vector3f>& points)
   return sum / count;
 }
 
+/// Under a name of its own first: experiments that run at once write the same file.
 void writePly(const fs::path& file, const OrientedPoints& points)
 {
-  std::ofstream out(file);
+  const fs::path unfinished = file.string() + "." + std::to_string(getpid());
+  std::ofstream out(unfinished);
   out << "ply\nformat ascii 1.0\nelement vertex " << points.size();
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"})
     out << "\nproperty float " << name;
@@ -76,8 +80,10 @@ void writePly(const fs::path& file, const OrientedPoints& points)
   out.precision(9);
   for (std::size_t i = 0; i < points.size(); ++i)
     out << points.points[i].transpose() << " " << points.normals[i].transpose() << "\n";
+  out.close();
   if (!out)
     throw FileError("The scaled model " + file.string() + " cannot be written; is there room?");
+  fs::rename(unfinished, file);
 }
 
 /// Pose that puts the middle of an object to a place.

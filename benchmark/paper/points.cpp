@@ -61,46 +61,70 @@ void drawResult(const std::string& file, const PointScene& scene, const TrainedM
   const OrientedPoints placed = transformed(model.surface, found.T_camera_object);
   saveCloudPicture({{scene.points, {0.95f, 0.95f, 0.95f}}, {placed, {0.1f, 0.75f, 0.25f}}}, file);
 }
+/// What is the same for every scene of an experiment.
+struct PointExperiment
+{
+  std::vector<PointObject> objects;
+  std::vector<Method> methods;
+  std::vector<std::shared_ptr<const TrainedModel>> models;  ///< per method
+  bool scene_is_part = false;
+  std::string picture;  ///< file without ending, for the next scene; empty: none
+};
+
+void runMethods(const PointExperiment& experiment, const PointScene& scene, const Json& labels, Json& runs)
+{
+  for (std::size_t m = 0; m < experiment.methods.size(); ++m)
+  {
+    Detection best;
+    Json run = runMethod(experiment.methods[m], experiment.models[m], scene, experiment.scene_is_part, best);
+    run["method"] = m;
+    run.update(labels);
+    if (!experiment.picture.empty() && run.contains("rate"))
+      drawResult(experiment.picture + "_" + std::to_string(m) + ".png", scene, *experiment.models[m], best);
+    runs.push_back(run);
+  }
+}
+
+PointExperiment prepare(const Json& specification, const std::string& folder)
+{
+  PointExperiment experiment;
+  for (const Json& object : specification.at("objects"))
+    experiment.objects.push_back(readObject(object, folder));
+  const Executor executor(0);
+  Models models(executor, specification.value("models", ""));
+  for (const Json& json : specification.at("methods"))
+  {
+    experiment.methods.push_back(readMethod(json));
+    experiment.methods.back().detector.num_threads = 1;
+    experiment.models.push_back(models.get(experiment.objects.front().part, experiment.methods.back()));
+  }
+  experiment.picture = specification.value("picture", "");
+  return experiment;
+}
 }  // namespace
 
 Json runPoints(const Json& specification, const std::string& folder)
 {
-  std::vector<PointObject> objects;
-  for (const Json& object : specification.at("objects"))
-    objects.push_back(readObject(object, folder));
-  const bool given = specification.at("scene").is_object();
-  const SceneKind kind = given ? SceneKind::Clutter : parseSceneKind(specification.at("scene").get<std::string>());
-  const Executor executor(0);
-  Models models(executor, specification.value("models", ""));
-  Json result = {{"models", Json::array()}, {"runs", Json::array()}, {"resolution", objects.front().resolution}};
-  std::vector<Method> methods;
-  for (const Json& json : specification.at("methods"))
+  PointExperiment experiment = prepare(specification, folder);
+  Json result = {
+      {"models", Json::array()}, {"runs", Json::array()}, {"resolution", experiment.objects.front().resolution}};
+  for (const auto& model : experiment.models)
+    result["models"].push_back(describe(*model));
+  if (specification.at("scene").is_object())
   {
-    methods.push_back(readMethod(json));
-    methods.back().detector.num_threads = 1;
-    result["models"].push_back(describe(*models.get(objects.front().part, methods.back())));
+    const PointScene scene = readPointScene(specification.at("scene"), experiment.objects.front());
+    runMethods(experiment, scene, {{"noise", 0}, {"trial", 0}}, result["runs"]);
+    return result;
   }
-  const int trials = given ? 1 : specification.value("trials", 3);
-  const auto noises = specification.value("noise", std::vector<double>{0.0});
-  for (const double noise : noises)
-    for (int trial = 0; trial < trials; ++trial)
+  const SceneKind kind = parseSceneKind(specification.at("scene").get<std::string>());
+  experiment.scene_is_part = kind == SceneKind::Whole;
+  for (const double noise : specification.value("noise", std::vector<double>{0.0}))
+    for (int trial = 0; trial < specification.value("trials", 3); ++trial)
     {
       const auto seed = static_cast<std::uint32_t>(specification.value("seed", 1) + trial);
-      const PointScene scene = given ? readPointScene(specification.at("scene"), objects.front())
-                                     : makePointScene(objects, kind, noise, seed);
-      for (std::size_t m = 0; m < methods.size(); ++m)
-      {
-        const auto model = models.get(objects.front().part, methods[m]);
-        Detection best;
-        Json run = runMethod(methods[m], model, scene, kind == SceneKind::Whole, best);
-        run["method"] = m;
-        run["noise"] = noise;
-        run["trial"] = trial;
-        if (trial == 0 && noise == noises.front() && specification.contains("picture") && run.contains("rate"))
-          drawResult(specification.at("picture").get<std::string>() + "_" + std::to_string(m) + ".png", scene, *model,
-                     best);
-        result["runs"].push_back(run);
-      }
+      const PointScene scene = makePointScene(experiment.objects, kind, noise, seed);
+      runMethods(experiment, scene, {{"noise", noise}, {"trial", trial}}, result["runs"]);
+      experiment.picture.clear();
     }
   return result;
 }

@@ -9,6 +9,7 @@ import hashlib
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import threading
@@ -141,6 +142,8 @@ def main():
         load, begin, busy = machine.load_average(), time.monotonic(), machine.busy_seconds_now()
         own = sum(os.times()[:4])
         failures = Runner(options, out).run_all(plan)
+        if not failures:
+            shutil.rmtree(out / "models")  # gigabytes, of use only while experiments share them
         seconds = max(1e-3, time.monotonic() - begin)
         others = (machine.busy_seconds_now() - busy - (sum(os.times()[:4]) - own)) / seconds
         note_machine(out, options.version, load, others if seconds > 1 else 0)
