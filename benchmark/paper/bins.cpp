@@ -120,6 +120,7 @@ Json runMethod(const Method& method, const Detector& detector, const EvaluationS
   const double seconds = processorSeconds() - begin;
   Json run = judged(scene, result, shapes);
   run["ms"] = 1e3 * seconds;
+  run["stages"] = Json::object();
   for (const auto& time : result.timing)
     run["stages"][time.stage] = run["stages"].value(time.stage, 0.0) + 1e3 * time.seconds;
   for (const char* stage : {"votes", "pairs", "references", "samples", "segments", "candidates", "clusters"})

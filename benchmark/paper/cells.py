@@ -49,7 +49,8 @@ def in_inverse_millimetres(config):
     """The same numbers of a configuration, read as a mean curvature in 1/mm."""
     values = real_bins.read_yaml(config)["training"]
     return {"curvature_measure": "mean_curvature",
-            **{key: f"{values[key]}/mm" for key in ("d_cur", "low_curvature_max", "high_curvature_min")}}
+            **{key: f"{str(values[key]).removesuffix('/mm')}/mm"
+               for key in ("d_cur", "low_curvature_max", "high_curvature_min")}}
 
 
 def retrieval_methods(config):
@@ -235,12 +236,22 @@ class Plan:
             self.add(f"own_{scene.name}", "bins", f"Tables 6-7: {scene.name}", kind="bins", dataset=scene.dataset,
                      split=self.options.split, parts=self.options.parts, max_scenes=scene.max_scenes,
                      methods=bin_methods(config))
+        for part in sorted(pathlib.Path(self.options.dataset).glob("parts/*/part.yaml")):
+            name = part.parent.name
+            if self.options.parts and name not in self.options.parts:
+                continue
+            for scene, noise, methods in (("whole", NOISES, retrieval_methods(config)),
+                                          ("view", NOISES[:1], partial_methods(config))):
+                self.add(f"{scene}_{name}", "retrieval", f"{scene}: {name}", kind="points",
+                         objects=[{"part": str(part.parent.resolve())}], scene=scene, noise=noise,
+                         trials=self.trials, seed=1, methods=methods)
 
 
 def make_plan(options, package, out):
     plan = Plan(options, package, out)
     if options.dataset:
         plan.own()
+        plan.cells.sort(key=lambda cell: GROUPS.index(cell.group))
         return plan
     wanted = options.only or ["retrieval", "laser", "bins", "real", "ablations"]
     for name, step in (("retrieval", plan.retrieval), ("laser", plan.laser), ("bins", plan.bin_sets),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/evaluation/pose_error.hpp"
@@ -24,14 +26,24 @@ std::vector<Eigen::Vector3f> thinned(const std::vector<Eigen::Vector3f>& points,
   return kept;
 }
 
+/// Mean distance of corresponding points (ADD), in the symmetric equivalent that fits best.
+double addOf(const TrainedModel& model, const Pose& estimate, const Pose& truth)
+{
+  constexpr int TURNS = 72;  // of an axis of revolution
+  double least = std::numeric_limits<double>::infinity();
+  for (const Pose& same : model.symmetry.sampled(TURNS))
+    least = std::min(least, averageDistance(model.points.points, estimate * same, truth));
+  return least;
+}
+
 /// Equation 9 with the points that truly are the object's, so that no method chooses its own denominator.
 void rate(Json& run, const Detection& found, const TrainedModel& model, const PointScene& scene, double match_distance)
 {
   run["rate"] =
       matchingRate(model.surface, found.T_camera_object, thinned(scene.of_object, RATED_POINTS), match_distance);
   run["claimed_rate"] = found.matching_rate;
-  run["add"] = averageDistance(model.points.points, found.T_camera_object, scene.T_camera_object) / model.diameter;
-  const PoseError error = poseError(found.T_camera_object, scene.T_camera_object, {}, model.center);
+  run["add"] = addOf(model, found.T_camera_object, scene.T_camera_object) / model.diameter;
+  const PoseError error = poseError(found.T_camera_object, scene.T_camera_object, model.symmetry, model.center);
   run["translation"] = error.translation;
   run["rotation"] = error.rotation;
 }

@@ -34,7 +34,9 @@ def sections(results, plan, options):
     beyond = [("Where the paper does not look", [tables.partial(results, plan), tables.occlusion(results, plan)]),
               ("Ablations", [bin_tables.ablations(results, plan), bin_tables.noise(results, plan)])]
     if options.dataset:
-        return [("Summary", [claims])] + [("Bins", bins[0][1][:3])]
+        return [("Summary", [claims]), ("Bins", bins[0][1][:3]),
+                ("Single parts as point sets", [tables.retrieval_details(results, plan),
+                                                tables.partial(results, plan)])]
     return [("Summary", [claims])] + whole + bins + beyond
 
 
