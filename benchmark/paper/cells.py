@@ -119,6 +119,7 @@ class Plan:
         self.cells = []
         self.missing = []
         self.trials = options.trials or (1 if options.quick else 3)
+        self.views = 1 if options.quick else self.trials + 1  # motions per model in views, clutter and Table 5
         self.bins = options.bins or (2 if options.quick else 20)
 
     def config(self, name):
@@ -155,7 +156,7 @@ class Plan:
                      methods=retrieval_methods(config), picture=self.picture(f"whole_{name}"))
             for scene in ("view", "clutter"):
                 self.add(f"{scene}_{name}", "partial", f"{scene}: {name}", kind="points",
-                         objects=[objects[k]] + others[:4], scene=scene, noise=[0.1], trials=2 * self.trials,
+                         objects=[objects[k]] + others[:4], scene=scene, noise=[0.1], trials=self.views,
                          seed=100 * k + 51, methods=partial_methods(config), picture=self.picture(f"{scene}_{name}"))
             self.add(f"curvature_{name}", "figures", f"Figure 12: {name}", kind="curvature", object=objects[k],
                      method=method("Cur-PPF", config, "cur_ppf"), picture=self.picture(f"curvature_{name}.png"))
@@ -178,7 +179,7 @@ class Plan:
         for k, item in enumerate(objects):
             self.add(f"laser_{item['name']}", "laser", f"Table 5: {item['name']}", kind="points",
                      objects=[item] + objects[k + 1:] + objects[:k], scene="clutter", noise=[0.1],
-                     trials=2 * self.trials, seed=1001 + 100 * k, methods=self.laser_methods(),
+                     trials=self.views, seed=1001 + 100 * k, methods=self.laser_methods(),
                      picture=self.picture(f"laser_{item['name']}"))
         scan = self.data("laser", "uwa/rs1_normals.ply", "uwa/pseudo_gt_parasaurolophus_rs1.xf")
         if scan:
@@ -238,6 +239,8 @@ class Plan:
                      methods=bin_methods(config))
         for part in sorted(pathlib.Path(self.options.dataset).glob("parts/*/part.yaml")):
             name = part.parent.name
+            if self.options.only and "retrieval" not in self.options.only:
+                continue
             if self.options.parts and name not in self.options.parts:
                 continue
             for scene, noise, methods in (("whole", NOISES, retrieval_methods(config)),

@@ -86,7 +86,7 @@ class SmallRun(unittest.TestCase):
                               check=False, capture_output=True, text=True)
 
     def test_own_bins_are_reported_and_finished_work_is_kept(self):
-        command = ["--dataset", str(self.folder / "set"), "-j", "1"]
+        command = ["--dataset", str(self.folder / "set"), "--only", "bins", "-j", "1"]
         first = self.run_paper(*command)
         self.assertEqual(first.returncode, 0, first.stderr)
         result = self.folder / "out" / "cells" / "own_set.json"
