@@ -21,7 +21,8 @@ GROUPS = ["retrieval", "bins", "real", "figures", "laser", "partial", "ablations
 WEIGHTS = [1, 2, 3, 4, 6, 8]
 
 TOP_CLUSTER = {"icp/method": "none", "clustering/max_clusters": "1"}
-WHOLE_SCENE = {"segmentation/method": "none", "segmentation/veto": "false"}
+# Without candidates nothing says how many clusters are parts: the strongest two for each of 25.
+WHOLE_SCENE = {"segmentation/method": "none", "segmentation/veto": "false", "clustering/max_clusters": "50"}
 
 
 @dataclasses.dataclass

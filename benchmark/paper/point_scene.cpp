@@ -95,7 +95,7 @@ Pose placed(const PointObject& object, const Eigen::Matrix3d& rotation, const Ei
   return T;
 }
 
-/// The searched object in the middle, the others around it, some nearer to the camera: they hide it in part.
+/// The searched object in the middle, the others around it, every second one nearer to the camera: it hides a part.
 std::vector<Pose> place(const std::vector<PointObject>& objects, std::mt19937& random)
 {
   std::vector<Pose> poses;
@@ -108,8 +108,8 @@ std::vector<Pose> place(const std::vector<PointObject>& objects, std::mt19937& r
     if (k > 0)
     {
       const double angle = first + 2 * M_PI * static_cast<double>(k) / static_cast<double>(objects.size() - 1);
-      const double away = size * (0.35 + 0.2 * uniform(random));
-      const double nearer = size * (uniform(random) - 0.65);
+      const double away = size * (0.25 + 0.3 * uniform(random));
+      const double nearer = size * (k % 2 == 1 ? -0.2 - 0.4 * uniform(random) : 0.3 * uniform(random));
       at += Eigen::Vector3d(away * std::cos(angle), away * std::sin(angle), nearer);
     }
     poses.push_back(placed(objects[k], rotation, at));
