@@ -42,8 +42,8 @@ class Missing:
 
 
 def method(name, config, feature, detector=None, training=None, **more):
-    return {"name": name, "preset": "paper", "config": config, "training": {"feature": feature, **(training or {})},
-            "detector": detector or {}, **more}
+    return {"name": name, "preset": "paper", "config": config, "detector": detector or {},
+            "training": {"feature": feature, **(training or {})}, **more}
 
 
 def in_inverse_millimetres(config):
@@ -56,7 +56,7 @@ def in_inverse_millimetres(config):
 
 def retrieval_methods(config):
     other = in_inverse_millimetres(config)
-    unweighted = {**TOP_CLUSTER, "voting/weight": "1"}  # the same votes as feature cur_ppf_unweighted, one training less
+    unweighted = {**TOP_CLUSTER, "voting/weight": "1"}  # as feature cur_ppf_unweighted; one training less
     return [method("PPF", config, "ppf", TOP_CLUSTER),
             method("Cur-PPF (unweighted)", config, "cur_ppf", unweighted),
             method("Cur-PPF", config, "cur_ppf", TOP_CLUSTER),
@@ -119,7 +119,7 @@ class Plan:
         self.out = pathlib.Path(out)
         self.cells = []
         self.missing = []
-        self.trials = options.trials or (1 if options.quick else 3)
+        self.trials = options.trials or (1 if options.quick else 2)
         self.views = 1 if options.quick else self.trials + 1  # motions per model in views, clutter and Table 5
         self.bins = options.bins or (2 if options.quick else 20)
 
@@ -135,7 +135,7 @@ class Plan:
     def data(self, group, *names):
         """The files of the data folder, or nothing and a reason."""
         if not self.options.data:
-            self.missing.append(Missing(group, "--data was not given; it needs " + ", ".join(names) + " in that folder"))
+            self.missing.append(Missing(group, "--data was not given; it needs in that folder " + ", ".join(names)))
             return None
         files = [pathlib.Path(self.options.data) / name for name in names]
         absent = [str(file) for file in files if not file.exists()]

@@ -88,8 +88,8 @@ def html_sections(all_sections, pictures):
 
 def html_page(body):
     return ("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width="
-            "device-width, initial-scale=1\"><title>Cur-PPF: the paper's experiments, run again</title><style>" + STYLE +
-            "</style></head><body><main>\n" + "\n".join(body) + "\n</main></body></html>\n")
+            "device-width, initial-scale=1\"><title>Cur-PPF: the paper's experiments, run again</title><style>" +
+            STYLE + "</style></head><body><main>\n" + "\n".join(body) + "\n</main></body></html>\n")
 
 
 def html_navigation(all_sections):

@@ -13,18 +13,18 @@ import tables
 from tables import Table
 
 INTRODUCTION = (
-    "Cui, Yu, Wu and Wu published Cur-PPF (Sensors 2022, 22, 1805) without a program. This is every experiment of theirs"
-    " run again with ours, whose preset `paper` makes each choice as in the text; docs/paper.md tells how its gaps were"
-    " read. Their bins are not public: virtual scans stand in for them, and it says so wherever they do. Every figure"
-    " comes from a run; those marked \"paper\" are the paper's own.")
+    "Cui, Yu, Wu and Wu published Cur-PPF (Sensors 2022, 22, 1805) without a program. This is every experiment of"
+    " theirs run again with ours, whose preset `paper` makes each choice as in the text; docs/paper.md tells how its gaps"
+    " were read. Their bins are not public: virtual scans stand in for them, and it says so where they do. Every"
+    " figure comes from a run; those marked \"paper\" are the paper's own.")
 
 
 def sections(results, plan, options):
     """(heading, tables) in order."""
     claims = Table("Its claims, one by one", ["claim", "paper", "ours", "here it", "because"],
                    [claim.row() for claim in summary.claims(results)],
-                   ["Every verdict is computed from the tables below; \"holds\" is about the claim on our data, not about"
-                    " their scenes."])
+                   ["Every verdict is computed from the tables below; \"holds\" is about the claim on our data, not"
+                    " about their scenes."])
     whole = [("The paper's tables: public data", [
         tables.retrieval_rates(results, plan), tables.retrieval_times(results, plan),
         tables.retrieval_details(results, plan), tables.laser(results, plan)])]
@@ -43,8 +43,9 @@ def sections(results, plan, options):
 def about_text(about, plan, results):
     done, all_cells = len(results.by_name), len(plan.cells)
     text = (f"{about.get('processor', 'unknown processor')}, {about.get('processors', '?')} processors; version"
-            f" {about.get('version', 'unknown')}; load average before the run {about.get('load', 0):.1f}, others kept"
-            f" {about.get('others_busy', 0):.1f} processors busy. {done} of {all_cells} experiments are in this report.")
+            f" {about.get('version', 'unknown')}; load average before the run {about.get('load', 0):.1f}, others"
+            f" kept {about.get('others_busy', 0):.1f} processors busy. {done} of {all_cells} experiments are in"
+            " this report.")
     return text, machine.busy_warning(about.get("load", 0), about.get("others_busy", 0))
 
 

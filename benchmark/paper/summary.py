@@ -105,9 +105,9 @@ def partial_claims(results):
     of = lambda name: 100 * figures.successes(figures.runs_of(clutter, name)).value()
     ppf, cur, spread = of("PPF"), of("Cur-PPF"), of("Cur-PPF, spread 0.3")
     votes = share_of(clutter, "Cur-PPF, spread 0.3", "PPF", "votes")
-    return [Claim("Curvature enhances the description (2.1.2) also in single views and clutter", "not measured",
-                  f"right poses: PPF {percent(ppf)}, Cur-PPF {percent(cur)}, with votes for the next bin too"
-                  f" {percent(spread)} at {times_less(votes)} fewer votes",
+    return [Claim("Curvature enhances the description (2.1.2) also in single views and clutter",
+                  "not measured", f"right poses: PPF {percent(ppf)}, Cur-PPF {percent(cur)}, with votes for the next"
+                  f" bin too {percent(spread)} at {times_less(votes)} fewer votes",
                   cur >= ppf - EQUAL if known(cur, ppf) else None,
                   "a neighbourhood cut off by an edge has another curvature than the model's")]
 
@@ -125,6 +125,7 @@ def headline(results):
     ppf, cur = (figures.rate(figures.runs_of(whole, name)) for name in ("PPF", "Cur-PPF"))
     if known(votes, time):
         said.append(f"On whole surfaces curvature in the feature casts {times_less(votes)} fewer votes and is"
-                    f" {times_less(time)} as fast as PPF; the matching rate goes from {percent(ppf)} to {percent(cur)}.")
+                    f" {times_less(time)} as fast as PPF; the matching rate goes from {percent(ppf)} to"
+                    f" {percent(cur)}.")
     return said + [f"{claim.claim}: {verdict(claim.held)} - paper {claim.paper}, ours {claim.ours}."
                    for claim in partial_claims(results) + bin_claims(results) if claim.held is not None]

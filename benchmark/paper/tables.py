@@ -184,7 +184,7 @@ def laser(results, plan):
         chef, chicken, rex, para, mean = published("5", row)
         table.rows.append([f"{row}, paper", number(para, 2), "-", "-", "-", number(mean, 2), "-", "-", "-"])
         table.notes.append(f"Paper, {row}: Cheff {chef}, Chicken {chicken}, T-Rex {rex}, Parasaurolophus {para} %.")
-    table.notes.insert(0, "Only the parasaurolophus and the scan rs1 of this set can be had: three other models stand in"
-                       " for Cheff, Chicken and T-Rex, in simulated scenes of four that hide each other. The paper gives"
-                       " no constants for this set; ours are those of its Dragon.")
+    table.notes.insert(0, "Only the parasaurolophus and the scan rs1 of this set can be had: three other models stand"
+                       " in for Cheff, Chicken and T-Rex, in simulated scenes of four that hide each other. The paper"
+                       " gives no constants for this set; ours are those of its Dragon.")
     return table
