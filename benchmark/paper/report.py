@@ -14,8 +14,8 @@ from tables import Table
 
 INTRODUCTION = (
     "Cui, Yu, Wu and Wu published Cur-PPF (Sensors 2022, 22, 1805) without a program. This is every experiment of"
-    " theirs run again with ours, whose preset `paper` makes each choice as in the text; docs/paper.md tells how its gaps"
-    " were read. Their bins are not public: virtual scans stand in for them, and it says so where they do. Every"
+    " theirs run again with ours, whose preset `paper` makes each choice as in the text; docs/paper.md tells how its"
+    " gaps were read. Their bins are not public: virtual scans stand in for them, and it says so where they do. Every"
     " figure comes from a run; those marked \"paper\" are the paper's own.")
 
 
