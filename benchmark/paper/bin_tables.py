@@ -6,7 +6,7 @@ import math
 
 import cells
 import figures
-from tables import Table, holds_everywhere, missing_of, number, published
+from tables import Table, average, holds_everywhere, missing_of, number, published
 
 COLUMNS = {"three_way_tube": "Three-Way Tube", "upright_column": "Pillar"}
 IN_PAPER = ("PPF", "Cur-PPF", "PPF + ICP", "Cur-PPF + ICP")
@@ -57,7 +57,7 @@ def rates(results, plan):
                                                     for heading, _, _ in columns] + [number(paper[2], 2)])
         ours = {heading: figures.mean(figures.scene_rates(figures.runs_of(group, name), top))
                 for heading, group, top in columns}
-        mean = figures.mean([ours[heading] for heading, _, _ in two])
+        mean = average([ours[heading] for heading, _, _ in two])[-1] if two else math.nan
         table.rows.append([f"**{name}, ours**"] + [number(value, 2) for value in ours.values()] + [number(mean, 2)])
         if name in IN_PAPER and two:
             table.notes.append(f"{name}: " + holds_everywhere([ours[h] for h, _, _ in two] + [mean], paper))

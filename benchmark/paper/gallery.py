@@ -46,6 +46,10 @@ def histogram(result, width=300, height=120):
     return f'<svg viewBox="0 0 {width} {height}" class="chart">{"".join(bars)}{labels}</svg>'
 
 
+def plain(value):
+    return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
+
+
 def bars(entries, unit, width=560):
     """Horizontal bars: (name, value)."""
     most = max((value for _, value in entries), default=1) or 1
@@ -55,7 +59,7 @@ def bars(entries, unit, width=560):
         length = value / most * (width - 330)
         rows.append(f'<text x="236" y="{y + 15}" text-anchor="end">{html.escape(name)}</text>'
                     f'<rect x="244" y="{y + 3}" width="{max(1, length):.1f}" height="16" rx="3" fill="#3461d1"/>'
-                    f'<text x="{250 + length:.1f}" y="{y + 15}">{value:.3g}{html.escape(unit)}</text>')
+                    f'<text x="{250 + length:.1f}" y="{y + 15}">{plain(value)}{html.escape(unit)}</text>')
     return f'<svg viewBox="0 0 {width} {24 * len(entries) + 4}" class="chart wide">{"".join(rows)}</svg>'
 
 

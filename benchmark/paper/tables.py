@@ -36,7 +36,8 @@ def paper_row(table, row, digits):
 
 
 def average(values):
-    return values + [figures.mean(values)]
+    """The values and their mean, which is none where a value is missing."""
+    return values + [math.nan if any(map(math.isnan, values)) else figures.mean(values)]
 
 
 def missing_of(plan, *groups):
