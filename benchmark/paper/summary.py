@@ -86,23 +86,30 @@ def bin_group(results):
     return results.named("own_") or [result for part in cells.PARTS for result in results.named(f"bins_{part}_")]
 
 
+def of_kept(results, what, name):
+    """A share of all poses that are kept: five of a tube's bin, three of a column's, as in the paper."""
+    own = results.named("own_")
+    groups = [(own, 5)] if own else [(results.named(f"bins_{part}_"), top) for part, (_, top) in cells.PARTS.items()]
+    shares = [what(figures.runs_of(group, name), top) for group, top in groups]
+    return figures.Share(sum(share.hits for share in shares), sum(share.total for share in shares))
+
+
 def bin_claims(results):
     group = bin_group(results)
-    top = {"three_way_tube": 5, "upright_column": 3}
 
     def mean_rate(name):
         if results.named("own_"):
             return figures.mean(figures.scene_rates(figures.runs_of(group, name), 5))
         return figures.mean([figures.mean(figures.scene_rates(figures.runs_of(results.named(f"bins_{part}_"), name),
-                                                              top[part])) for part in cells.PARTS])
+                                                              top)) for part, (_, top) in cells.PARTS.items()])
     ppf, cur, refined = mean_rate("PPF"), mean_rate("Cur-PPF"), mean_rate("Cur-PPF + ICP")
     time = share_of(group, "Cur-PPF", "PPF", "ms")
     segmentation = share_of(group, "PPF on the candidates", "PPF", "ms")
     curvature = share_of(group, "Cur-PPF", "PPF on the candidates", "ms")
     fast = share_of(group, "our preset fast", "Cur-PPF + ICP", "ms")
-    right = {name: figures.right_share(figures.runs_of(group, name), 5).value() * 100 for name in
+    right = {name: 100 * of_kept(results, figures.right_share, name).value() for name in
              ("PPF", "Cur-PPF", "Cur-PPF + ICP", "our preset fast")}
-    wrong = figures.graspable_but_wrong(figures.runs_of(group, "Cur-PPF + ICP"), 5)
+    wrong = of_kept(results, figures.graspable_but_wrong, "Cur-PPF + ICP")
     return [
         Claim("In bins Cur-PPF has the higher matching rate (Table 6)", "85.50 to 94.98 %",
               f"{percent(ppf)} to {percent(cur)}", cur - ppf > EQUAL if known(cur, ppf) else None,
@@ -192,10 +199,9 @@ def said_of_bins(results):
 
 
 def said_of_poses(results):
-    group = bin_group(results)
-    shares = {name: figures.right_share(figures.runs_of(group, name), 5) for name in
+    shares = {name: of_kept(results, figures.right_share, name) for name in
               ("PPF", "PPF on the candidates", "Cur-PPF", "Cur-PPF + ICP")}
-    wrong = figures.graspable_but_wrong(figures.runs_of(group, "Cur-PPF + ICP"), 5)
+    wrong = of_kept(results, figures.graspable_but_wrong, "Cur-PPF + ICP")
     if not wrong.total:
         return ""
     text = ", ".join(f"{name} {share.text()}" for name, share in shares.items())
@@ -216,7 +222,7 @@ def said_of_partial(results):
 
 def said_of_fast(results):
     group = bin_group(results)
-    share = figures.right_share(figures.runs_of(group, "our preset fast"), 5)
+    share = of_kept(results, figures.right_share, "our preset fast")
     if not share.total:
         return ""
     time = share_of(group, "our preset fast", "Cur-PPF + ICP", "ms")
