@@ -184,7 +184,7 @@ def ablations(results, plan):
 
 
 def noise(results, plan):
-    table = Table("Depth noise of the sensor, three-way tube: right of the best five, % | mean rate, %", ["method"] + [
+    table = Table("Depth noise of the sensor, three-way tube: right of the best five, %; mean rate, %", ["method"] + [
         f"{value} mm" for value in cells.SENSOR_NOISES], [], command="--only ablations",
         missing=missing_of(plan, "ablations"))
     groups = {value: results.named(f"noise_{value}_") for value in cells.SENSOR_NOISES}
@@ -193,7 +193,7 @@ def noise(results, plan):
         row = [name]
         for group in groups.values():
             runs = figures.runs_of(group, name)
-            row.append(f"{figures.right_share(runs, 5).text()} | "
+            row.append(f"{figures.right_share(runs, 5).text()}; rate "
                        f"{number(figures.mean(figures.scene_rates(runs, 5)))}" if runs else "-")
         table.rows.append(row)
     table.notes = [f"{max((len(group) for group in groups.values()), default=0)} bin(s) a column, the same piles."]

@@ -105,8 +105,8 @@ def ablation_methods(config):
     rows += [row("reference share", f"1/{n}", {"voting/reference_share": 1 / n}) for n in (10, 20, 50)]
     rows += [row("segmentation", "off", {**WHOLE_SCENE, "voting/reference_share": 0.02}),
              row("segmentation", "depth edges", {"segmentation/method": "depth_edges"}),
-             row("segmentation", "the true outlines", {"segmentation/method": "none", "segmentation/veto": "false",
-                                                       "max_detections": "1"}, segments="true")]
+             row("segmentation", "the true outlines", {"segmentation/method": "none", "segmentation/veto": "false"},
+                 segments="true")]
     return rows
 
 

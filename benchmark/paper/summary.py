@@ -148,8 +148,8 @@ def claims(results):
 
 def headline(results):
     """A few sentences; nothing that has not been run is spoken of."""
-    return [sentence for part in (said_of_cells, said_of_whole, said_of_bins, said_of_poses, said_of_partial, said_of_fast)
-            if (sentence := part(results))]
+    parts = (said_of_cells, said_of_whole, said_of_bins, said_of_poses, said_of_partial, said_of_fast)
+    return [sentence for part in parts if (sentence := part(results))]
 
 
 def reached(results):
@@ -183,8 +183,9 @@ def said_of_whole(results):
         return ""
     ppf, cur = (figures.rate(figures.runs_of(whole, name)) for name in ("PPF", "Cur-PPF"))
     return ("**What it gains is time.** On whole surfaces curvature in the feature casts"
-            f" {times_less(votes)} fewer votes and takes {times_less(time)} less time than PPF; the matching rate is {percent(ppf)} with PPF and"
-            f" {percent(cur)} with weighted Cur-PPF, so that the paper's gain in rate is not seen.")
+            f" {times_less(votes)} fewer votes and takes {times_less(time)} less time than PPF; the matching"
+            f" rate is {percent(ppf)} with PPF and {percent(cur)} with weighted Cur-PPF: the paper's gain in"
+            " rate is not seen.")
 
 
 def said_of_bins(results):
