@@ -28,14 +28,6 @@ Pose lookedAt()
   return T;
 }
 
-/// Public models stand along y and look along z.
-Pose frontView()
-{
-  Pose T = Pose::Identity();
-  T.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  return T;
-}
-
 std::pair<double, double> rangeOf(std::vector<float> values)
 {
   values.erase(std::remove_if(values.begin(), values.end(), [](float q) { return std::isnan(q); }), values.end());
@@ -118,8 +110,9 @@ Json runCurvature(const Json& specification, const std::string& folder)
   Models models(executor, specification.value("models", ""));
   const auto model = models.get(object.part, method);
   const auto [low, high] = rangeOf(model->points.curvature);
-  const bool is_mesh = !model->mesh.empty();
-  drawCurvature(*model, is_mesh ? lookedAt() : frontView(), low, high, specification.at("picture").get<std::string>());
+  // The public models' y points down and their faces look at the viewer, as it is.
+  drawCurvature(*model, model->mesh.empty() ? Pose::Identity() : lookedAt(), low, high,
+                specification.at("picture").get<std::string>());
   Json result = describe(*model);
   result["from"] = low;
   result["to"] = high;

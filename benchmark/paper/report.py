@@ -45,7 +45,8 @@ def about_text(about, plan, results):
     text = (f"{about.get('processor', 'unknown processor')}, {about.get('processors', '?')} processors; version"
             f" {about.get('version', 'unknown')}; load average before the run {about.get('load', 0):.1f}, others"
             f" kept {about.get('others_busy', 0):.1f} processors busy. {done} of {all_cells} experiments are in"
-            " this report.")
+            f" this report, with {plan.trials} motion(s) of a model per noise, {plan.views} per view and clutter, and"
+            f" {plan.bins} bin(s) of a part{' (--quick)' if plan.options.quick else ''}.")
     return text, machine.busy_warning(about.get("load", 0), about.get("others_busy", 0))
 
 
