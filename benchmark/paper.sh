@@ -10,6 +10,11 @@ start_dir=$PWD
 fail() { echo "paper: $*" >&2; exit 2; }
 . "$(dirname "${BASH_SOURCE[0]}")/make_set.sh"
 
+case " $* " in
+  *" -h "*|*" --help "*)
+    sed -n '2,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+    exec "$source_dir/benchmark/paper/run.py" --program - --experiment - --package - --help ;;
+esac
 find_program
 experiment=$build_dir/benchmark_paper
 [ -x "$experiment" ] || fail "no $experiment; run scripts/build.sh first, or set BUILD_DIR"
