@@ -81,9 +81,10 @@ class Picker:
         self._report_pick = connect("detector/report_pick", ReportPick)
         self._clear_avoid_list = connect("detector/clear_avoid_list", Trigger)
         self._grip = connect("virtual_cell/grip", Grip)
+        self._shake = connect("virtual_cell/shake", Trigger)
         self._arm = KinematicArm(JOINT_SPEED * rospy.get_param("~speed", 1.0))
         self._frame = rospy.get_param("~frame", "base")
-        self._max_fruitless = rospy.get_param("~max_fruitless", 6)
+        self._max_fruitless = rospy.get_param("~max_fruitless", 12)
         self._start = time.monotonic()
         self._has_started = False
         self._num_attempts = self._num_picked = self._num_left = 0
@@ -103,8 +104,9 @@ class Picker:
                 continue
             print(f"      {answer.code.name}: {answer.code.message} ({answer.summary})", flush=True)
             self._causes[answer.code.name] += 1
-            if answer.code.value == ReturnCode.ALL_AVOIDED:  # nothing else is left: try these again
-                self._clear_avoid_list()
+            if answer.code.value > 0:  # nothing is allowed: the parts have to lie otherwise
+                print(f"      {self._shake().message}", flush=True)
+                self._clear_avoid_list()  # what failed lies elsewhere now
         return False
 
     def summary(self):

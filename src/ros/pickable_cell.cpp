@@ -71,6 +71,8 @@ void PickableCell::refill(const Progress& progress)
   cell_->fill(parameters_.counts, next_seed_++, progress);
 }
 
+void PickableCell::shake() { cell_->shake(static_cast<std::uint32_t>(luck_.below(1 << 30))); }
+
 bin_picking::simulation::CellScan PickableCell::expose()
 {
   return cell_->scan(static_cast<std::uint32_t>(exposure_seeds_()));

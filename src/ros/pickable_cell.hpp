@@ -54,6 +54,9 @@ public:
   /// `progress` ends it and reaches the caller. \throws bin_picking::ParameterError a part does not fit, too many parts
   void refill(const Progress& progress);
 
+  /// All that lies in the bin falls anew, under new ids. \pre filled \throws bin_picking::ParameterError
+  void shake();
+
   /// One exposure with noise of its own.
   bin_picking::simulation::CellScan expose();
 

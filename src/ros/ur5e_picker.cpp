@@ -68,12 +68,13 @@ public:
         report_pick_(connect<ReportPick>(nh, "detector/report_pick")),
         clear_avoid_list_(connect<std_srvs::Trigger>(nh, "detector/clear_avoid_list")),
         grip_(connect<Grip>(nh, "virtual_cell/grip")),
+        shake_(connect<std_srvs::Trigger>(nh, "virtual_cell/shake")),
         arm_(nh,
              bin_picking::loadRobot(bin_picking_ros::resolveResource(
                  private_nh.param<std::string>("robot", "package://bin_picking_perception/config/robots/ur5e.yaml"))),
              JOINT_SPEED * private_nh.param("speed", 1.0)),
         frame_(private_nh.param<std::string>("frame", "base")),
-        max_fruitless_(private_nh.param("max_fruitless", 6))
+        max_fruitless_(private_nh.param("max_fruitless", 12))
   {}
 
   /// \return whether the bin is empty
@@ -93,8 +94,8 @@ public:
       }
       std::printf("      %s: %s (%s)\n", answer.code.name.c_str(), answer.code.message.c_str(), answer.summary.c_str());
       ++causes_[answer.code.name];
-      if (answer.code.value == ReturnCode::ALL_AVOIDED)  // nothing else is left: try these again
-        call<std_srvs::Trigger>(clear_avoid_list_, {});
+      if (answer.code.value > 0)
+        shake();
     }
     return false;
   }
@@ -151,6 +152,13 @@ private:
       ++causes_[outcomeName(result.outcome)];
     std::fflush(stdout);
     return is_picked;
+  }
+
+  /// Where nothing is allowed, the parts have to lie otherwise; what failed lies elsewhere then.
+  void shake()
+  {
+    std::printf("      %s\n", call<std_srvs::Trigger>(shake_, {}).message.c_str());
+    call<std_srvs::Trigger>(clear_avoid_list_, {});
   }
 
   void move(const std::vector<double>& joints)
@@ -210,6 +218,7 @@ private:
   ros::ServiceClient report_pick_;
   ros::ServiceClient clear_avoid_list_;
   ros::ServiceClient grip_;
+  ros::ServiceClient shake_;
   bin_picking_ros::KinematicArm arm_;
   const std::string frame_;
   const int max_fruitless_;

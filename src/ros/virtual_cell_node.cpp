@@ -41,6 +41,7 @@ VirtualCellNode::~VirtualCellNode()
   timer_.stop();
   trigger_.shutdown();
   refill_.shutdown();
+  shake_.shutdown();
   take_part_.shutdown();
   grip_.shutdown();
   spinner_->stop();
@@ -68,6 +69,7 @@ void VirtualCellNode::startServices(const ros::NodeHandle& nh, const ros::NodeHa
   service_nh.setCallbackQueue(&queue_);
   trigger_ = service_nh.advertiseService("trigger", &VirtualCellNode::handleTrigger, this);
   refill_ = service_nh.advertiseService("refill", &VirtualCellNode::handleRefill, this);
+  shake_ = service_nh.advertiseService("shake", &VirtualCellNode::handleShake, this);
   take_part_ = service_nh.advertiseService("take_part", &VirtualCellNode::handleTakePart, this);
   grip_ = service_nh.advertiseService("grip", &VirtualCellNode::handleGrip, this);
   ros::NodeHandle timer_nh(nh);
@@ -205,6 +207,26 @@ bool VirtualCellNode::handleRefill(Trigger::Request&, Trigger::Response& respons
   const Status after = status();
   response.success = static_cast<std::uint8_t>(after.state == State::Ready);
   response.message = after.text;
+  return true;
+}
+
+bool VirtualCellNode::handleShake(Trigger::Request&, Trigger::Response& response)
+{
+  response.success = 0;
+  try
+  {
+    requireReady();
+    const std::lock_guard<std::mutex> lock(cell_mutex_);
+    requireReady();  // a refill may have been first
+    if (cell_->numLeft() > 0)
+      cell_->shake();
+    response.message = "Shaken: " + partsText(cell_->numLeft()) + " in the bin fell anew.";
+    response.success = 1;
+  }
+  catch (const std::exception& error)
+  {
+    response.message = error.what();
+  }
   return true;
 }
 

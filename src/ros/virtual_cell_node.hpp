@@ -71,6 +71,7 @@ private:
 
   bool handleTrigger(Trigger::Request& request, Trigger::Response& response);
   bool handleRefill(Trigger::Request& request, Trigger::Response& response);
+  bool handleShake(Trigger::Request& request, Trigger::Response& response);
   bool handleTakePart(TakePart::Request& request, TakePart::Response& response);
   TakePart::Response takePart(const TakePart::Request& request);
   bool handleGrip(Grip::Request& request, Grip::Response& response);
@@ -93,6 +94,7 @@ private:
   ros::CallbackQueue queue_;
   ros::ServiceServer trigger_;
   ros::ServiceServer refill_;
+  ros::ServiceServer shake_;
   ros::ServiceServer take_part_;
   ros::ServiceServer grip_;
   ros::WallTimer timer_;
