@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,7 +11,6 @@
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/detector.hpp"
 #include "bin_picking_perception/grasping/grasp.hpp"
-#include "bin_picking_perception/grasping/grasp_expansion.hpp"
 #include "bin_picking_perception/grasping/grasp_parameters.hpp"
 #include "bin_picking_perception/grasping/gripper.hpp"
 #include "bin_picking_perception/model/part.hpp"
@@ -20,6 +18,8 @@
 
 namespace bin_picking
 {
+struct PreparedPart;
+
 /// From detections to grasps that a robot can take: each grasp of each part, expanded by symmetry and tolerance, is
 /// held against what a person would check, in this order: the detection, the gripper's opening, the avoid list, the
 /// tilt, the collisions of the whole way, the robot's reach. What remains is ranked. Immutable; thread-safe.
@@ -64,7 +64,7 @@ public:
 private:
   Setup setup_;
   std::optional<Kinematics> kinematics_;
-  std::map<std::string, std::vector<GraspVariant>> variants_;  ///< per part
+  std::shared_ptr<const std::vector<PreparedPart>> prepared_;  ///< as setup_.parts
   Executor executor_;
 };
 }  // namespace bin_picking

@@ -260,17 +260,26 @@ Clearance Obstacles::closing(const Gripper& gripper, const Pose& T_camera_tool0,
   return impl_->inWords(watch.worst, gripper.bodies[watch.body].name);
 }
 
-Clearance Obstacles::retreat(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const
+Clearance Obstacles::leaving(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const
 {
   impl_->checkTarget(target);
   Impl::Watch watch{*impl_, target, false};
   visitSweeps(gripper, motion, std::ref(watch));
-  if (watch.worst.free())
-  {
-    const Encounter of_part = impl_->meetHeld(motion.motion_camera, target);
-    if (of_part.margin() < watch.worst.margin())
-      return impl_->inWords(of_part, "held part");
-  }
   return impl_->inWords(watch.worst, gripper.bodies[watch.body].name);
+}
+
+Clearance Obstacles::pulledOut(const Eigen::Vector3d& motion_camera, std::size_t target) const
+{
+  impl_->checkTarget(target);
+  return impl_->inWords(impl_->meetHeld(motion_camera, target), "held part");
+}
+
+Clearance Obstacles::retreat(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const
+{
+  const Clearance of_gripper = leaving(gripper, motion, target);
+  if (!of_gripper.free())
+    return of_gripper;
+  const Clearance of_part = pulledOut(motion.motion_camera, target);
+  return of_part.margin() < of_gripper.margin() ? of_part : of_gripper;
 }
 }  // namespace bin_picking
