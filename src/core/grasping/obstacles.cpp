@@ -75,11 +75,14 @@ struct Obstacles::Impl
     part.T_camera_object = T;
     for (int k = 0; k < 8; ++k)
       part.box_camera.extend(T * part.surface->box().corner(static_cast<Eigen::AlignedBox3f::CornerType>(k)));
+  }
+
+  void findPixels(std::size_t i)
+  {
+    Part& part = parts[i];
     const DistanceField& field = part.placed.model->field;
-    if (seen)
-      part.pixels =
-          seen->ownPixels(field, part.surface->box(), part.placed.T_camera_object,
-                          std::min(static_cast<float>(parameters.target_tolerance), BAND_SHARE * field.band()));
+    part.pixels = seen->ownPixels(field, part.surface->box(), part.placed.T_camera_object,
+                                  std::min(static_cast<float>(parameters.target_tolerance), BAND_SHARE * field.band()));
   }
 
   void meetBin(const BodySweep& body, Encounter& worst) const
@@ -235,7 +238,15 @@ Obstacles::Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<Plac
   });
   for (Impl::Part& part : impl->parts)
     part.surface = impl->surfaces.at(part.placed.model).get();
-  executor.forEach(impl->parts.size(), [&](std::size_t i) { impl->preparePart(i); });
+  for (std::size_t i = 0; i < impl->parts.size(); ++i)
+    impl->preparePart(i);
+  if (impl->seen)  // the longest first
+    executor.forEach(SeenSpace::STEPS + impl->parts.size(), [&](std::size_t i) {
+      if (i < SeenSpace::STEPS)
+        impl->seen->prepare(i);
+      else
+        impl->findPixels(i - SeenSpace::STEPS);
+    });
   impl_ = std::move(impl);
 }
 

@@ -43,13 +43,22 @@ std::vector<Eigen::Vector3d> cornersOf(const Bin& bin)
 }  // namespace
 
 SeenSpace::SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstacleParameters& parameters)
-    : surface_clearance_(static_cast<float>(parameters.surface_clearance))
+    : surface_clearance_(static_cast<float>(parameters.surface_clearance)),
+      unseen_entry_(static_cast<float>(parameters.unseen_entry)),
+      shadow_entry_(static_cast<float>(parameters.shadow_entry))
 {
   extendTo(measured, bin);
   bridgeGaps(measured, bin);
-  allowed_ = allowedDepth(static_cast<float>(parameters.unseen_entry));
-  allowed_own_ = allowedDepth(static_cast<float>(parameters.shadow_entry));
-  findBlockMinima();
+}
+
+void SeenSpace::prepare(std::size_t step)
+{
+  if (step == 0)
+    allowed_own_ = allowedDepth(shadow_entry_);
+  else
+    allowed_ = allowedDepth(unseen_entry_);
+  if (step == 1)
+    findBlockMinima();
 }
 
 void SeenSpace::extendTo(const DepthGrid& measured, const Bin* bin)
@@ -230,19 +239,18 @@ OwnPixels SeenSpace::ownPixels(const DistanceField& field, const Eigen::AlignedB
   const Eigen::Isometry3f T_object(T_camera_object.inverse().cast<float>());
   const float nearest = box.min().z() - tolerance;
   const float farthest = box.max().z() + tolerance;
-  const auto isOwn = [&](std::size_t i) {
-    if (!(depth_[i] >= nearest && depth_[i] <= farthest))
-      return false;
-    const auto u = static_cast<int>(i) % stride_;
-    const auto v = static_cast<int>(i) / stride_;
-    return std::abs(field.at(T_object * pointAt(u, v))) <= tolerance;
+  const auto isOwn = [&](std::size_t i, int u, int v) {
+    return depth_[i] >= nearest && depth_[i] <= farthest &&
+           std::abs(field.at(T_object * (depth_[i] * ray(u, v)))) <= tolerance;
+  };
+  const auto isHiddenByOwn = [&](std::int32_t hidden_by) {
+    return hidden_by >= 0 && isOwn(static_cast<std::size_t>(hidden_by), hidden_by % stride_, hidden_by / stride_);
   };
   for (int v = w.top; v < w.bottom; ++v)
     for (int u = w.left; u < w.right; ++u)
     {
       const std::size_t i = index(u, v);
-      const bool own =
-          measured_[i] != 0 ? isOwn(i) : hidden_by_[i] >= 0 && isOwn(static_cast<std::size_t>(hidden_by_[i]));
+      const bool own = measured_[i] != 0 ? isOwn(i, u, v) : isHiddenByOwn(hidden_by_[i]);
       pixels.own[static_cast<std::size_t>((v - w.top) * pixels.width + u - w.left)] = own ? 1 : 0;
     }
   return pixels;
@@ -289,23 +297,22 @@ struct SeenSpace::Search
   void pixels(int u, int v)
   {
     const std::size_t first = space.index(u, v);
+    const std::uint8_t own = target.inRow(u, v);
     Lanes lanes;
-    std::array<bool, BLOCK> own{};
-    for (int k = 0; k < BLOCK; ++k)
-    {
-      const std::size_t i = first + static_cast<std::size_t>(k);
-      own[static_cast<std::size_t>(k)] = target.at(u + k, v);
-      lanes.depth[k] = space.depth_[i];
-      lanes.allowed[k] = own[static_cast<std::size_t>(k)] ? space.allowed_own_[i] : space.allowed_[i];
-    }
-    meet(body.planes, space.ray(u, v), 1 / space.fx_, lanes);
+    std::copy_n(&space.depth_[first], BLOCK, lanes.depth);
+    std::copy_n(&space.allowed_[first], BLOCK, lanes.allowed);
+    for (int k = 0; own != 0 && k < BLOCK; ++k)
+      if (own >> k & 1)
+        lanes.allowed[k] = space.allowed_own_[first + static_cast<std::size_t>(k)];
+    if (!meet(body.planes, space.ray(u, v), 1 / space.fx_, LOOK_AHEAD, lanes))
+      return;
     for (int k = 0; k < BLOCK; ++k)
     {
       if (lanes.beyond[k] > 0)
         keepWorse(unseen, {-lanes.beyond[k], 0, ObstacleKind::Unknown, -1,
                            (lanes.allowed[k] + lanes.beyond[k]) * space.ray(u + k, v)});
       if (lanes.distance[k] < LOOK_AHEAD && space.measured_[first + static_cast<std::size_t>(k)] != 0 &&
-          !own[static_cast<std::size_t>(k)])
+          !(own >> k & 1))
         keepWorse(surface,
                   {lanes.distance[k], space.surface_clearance_, ObstacleKind::Surface, -1, space.pointAt(u + k, v)});
     }
