@@ -49,9 +49,21 @@ bool meet(const Planes& planes, const Eigen::Vector3f& ray, float step, float ne
   return nearest < near || farthest > 0;
 }
 
-void raiseTo(const float* __restrict other, std::size_t count, float* __restrict values)
+namespace
 {
-  for (std::size_t i = 0; i < count; ++i)
-    values[i] = other[i] > values[i] ? other[i] : values[i];
+void raiseToAhead(float* values, std::size_t count, std::size_t ahead)
+{
+  for (std::size_t i = 0; i + ahead < count; ++i)
+    values[i] = values[i + ahead] > values[i] ? values[i + ahead] : values[i];
+}
+}  // namespace
+
+void raiseToWindow(float* values, std::size_t count, std::size_t step, std::size_t window)
+{
+  std::size_t covered = 1;
+  for (; 2 * covered <= window; covered *= 2)
+    raiseToAhead(values, count, covered * step);
+  if (covered < window)
+    raiseToAhead(values, count, (window - covered) * step);
 }
 }  // namespace bin_picking

@@ -23,6 +23,7 @@ struct Lanes
 /// \return whether any distance is less than `near`, or the body goes beyond what is allowed
 bool meet(const Planes& planes, const Eigen::Vector3f& ray, float step, float near, Lanes& lanes);
 
-/// Each value at least that of the other row.
-void raiseTo(const float* other, std::size_t count, float* values);
+/// Each value becomes the largest of `window` values, itself the first, each `step` after the one before. Values beyond
+/// the end do not count. In place.
+void raiseToWindow(float* values, std::size_t count, std::size_t step, std::size_t window);
 }  // namespace bin_picking
