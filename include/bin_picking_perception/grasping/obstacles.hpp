@@ -11,6 +11,7 @@
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/common/parameters.hpp"
 #include "bin_picking_perception/grasping/gripper.hpp"
+#include "bin_picking_perception/grasping/tool_shape.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
 #include "bin_picking_perception/scene/bin.hpp"
 #include "bin_picking_perception/scene/depth_grid.hpp"
@@ -118,8 +119,12 @@ public:
   /// The way out: the gripper at the motion's opening, and the target held: leaving(), then pulledOut().
   Clearance retreat(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const;
 
+  // The same with shapes that were made once for many ways; `motion.opening` is not looked at.
+
+  Clearance approach(const ToolShape& open, const ToolMotion& motion, std::size_t target) const;
+  Clearance closing(const ToolShape& closing, const Pose& T_camera_tool0, std::size_t target) const;
   /// The gripper alone on the way out.
-  Clearance leaving(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const;
+  Clearance leaving(const ToolShape& closed, const ToolMotion& motion, std::size_t target) const;
 
   /// The target alone on the way out. It may touch what it touches at rest, but go no deeper into it than `max_drag`.
   /// The same for all grasps that retreat by the same motion (metres).

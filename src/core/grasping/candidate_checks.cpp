@@ -104,18 +104,17 @@ bool checkTilt(Grasp& grasp, const GraspSurroundings& s)
                     degrees(s.setup.parameters.max_tilt) + " are allowed (max_tilt).");
 }
 
-bool checkGripper(Grasp& grasp, const Eigen::Vector3d& out_camera, const GraspSurroundings& s)
+bool checkGripper(Grasp& grasp, const PreparedGrasp& prepared, const Eigen::Vector3d& out_camera,
+                  const Obstacles& obstacles)
 {
   grasp.collision_checked = true;
-  const Gripper& gripper = s.setup.gripper;
   const std::size_t target = grasp.detection_index;
   const Eigen::Vector3d at_grasp = grasp.tool0.grasp.translation();
   const ToolMotion in{grasp.tool0.pre_grasp, at_grasp - grasp.tool0.pre_grasp.translation(), grasp.opening};
   const ToolMotion out{grasp.tool0.grasp, out_camera, grasp.width};
-  return passes(grasp, s.obstacles->approach(gripper, in, target), "On the way in") &&
-         passes(grasp, s.obstacles->closing(gripper, grasp.tool0.grasp, grasp.opening, grasp.width, target),
-                "While closing") &&
-         passes(grasp, s.obstacles->leaving(gripper, out, target), "On the way out");
+  return passes(grasp, obstacles.approach(prepared.open, in, target), "On the way in") &&
+         passes(grasp, obstacles.closing(prepared.closing, grasp.tool0.grasp, target), "While closing") &&
+         passes(grasp, obstacles.leaving(prepared.closed, out, target), "On the way out");
 }
 
 bool checkHeldPart(Grasp& grasp, const Clearance& on_the_way_out)

@@ -46,9 +46,10 @@ Refusal checkDetection(std::size_t index, const GraspSurroundings& s);
 // Each returns whether the grasp passed; if not, the rejection and its reason are filled in.
 
 bool checkTilt(Grasp& grasp, const GraspSurroundings& s);
-/// The gripper on the whole way: open in, closing, out. Fills in the closest passage. Needs obstacles.
+/// The gripper on the whole way: open in, closing, out. Fills in the closest passage.
 /// \param out_camera how the grasp is lifted, metres
-bool checkGripper(Grasp& grasp, const Eigen::Vector3d& out_camera, const GraspSurroundings& s);
+bool checkGripper(Grasp& grasp, const PreparedGrasp& prepared, const Eigen::Vector3d& out_camera,
+                  const Obstacles& obstacles);
 /// The part in the hand.
 bool checkHeldPart(Grasp& grasp, const Clearance& on_the_way_out);
 /// One configuration of the arm through the whole way. Fills in its joints. Needs the kinematics.

@@ -97,7 +97,7 @@ bool DetectionGrasps::isTooSteep(std::size_t v) const
 
 bool DetectionGrasps::isFree(Grasp& grasp, std::size_t g) const
 {
-  return !s_.obstacles || checkGripper(grasp, outOf(grasp, g), s_);
+  return !s_.obstacles || checkGripper(grasp, part_.grasps[g], outOf(grasp, g), *s_.obstacles);
 }
 bool DetectionGrasps::comesOut(Grasp& grasp, std::size_t g)
 {

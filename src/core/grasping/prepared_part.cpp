@@ -61,6 +61,12 @@ PreparedPart preparePart(const PartDefinition& part, const Gripper& gripper, int
     PreparedGrasp grasp;
     grasp.refusal = checkGripper(definition, gripper);
     grasp.T_tip_tool0 = flangeOf(definition.width, gripper);
+    if (grasp.refusal.rejection == GraspRejection::None)
+    {
+      grasp.open = shapeAt(gripper, definition.opening);
+      grasp.closing = closingShape(gripper, definition.opening, definition.width);
+      grasp.closed = shapeAt(gripper, definition.width);
+    }
     grasp.priority_share = priorityShare(definition.priority, part);
     prepared.grasps.push_back(std::move(grasp));
   }

@@ -8,6 +8,7 @@
 #include "bin_picking_perception/grasping/grasp.hpp"
 #include "bin_picking_perception/grasping/grasp_expansion.hpp"
 #include "bin_picking_perception/grasping/gripper.hpp"
+#include "bin_picking_perception/grasping/tool_shape.hpp"
 #include "bin_picking_perception/model/part.hpp"
 
 namespace bin_picking
@@ -24,6 +25,7 @@ struct PreparedGrasp
 {
   Refusal refusal;                      ///< where the gripper cannot take it
   Pose T_tip_tool0 = Pose::Identity();  ///< when holding; not finite where the gripper does not have the width
+  ToolShape open, closing, closed;      ///< of the gripper on the way; empty where it cannot take it
   double priority_share = 1;            ///< in the range of the part's priorities, [0, 1]
 };
 
