@@ -23,6 +23,13 @@ struct PreparedPart;
 /// From detections to grasps that a robot can take: each grasp of each part, expanded by symmetry and tolerance, is
 /// held against what a person would check, in this order: the detection, the gripper's opening, the avoid list, the
 /// tilt, the collisions of the whole way, the robot's reach. What remains is ranked. Immutable; thread-safe.
+///
+/// What is written comes first: copies turned or tilted by a tolerance are tried for detections that have no other
+/// grasp, in their order, as long as the answer has room (max_grasps), and up to a few for each.
+///
+/// The rejected are listed detection by detection: each grasp as written and each symmetric copy (one for all copies
+/// where the reason does not depend on the copy), and of the turned and tilted copies one for each grasp and kind of
+/// rejection that is not listed yet.
 class GraspPlanner
 {
 public:
