@@ -578,7 +578,7 @@ TEST(GraspPlanner, AnAvoidedPlaceIsSkippedWithItsReason)
   EXPECT_EQ(selection.rejected[0].reason, "It was missed 3 s ago.");
 }
 
-TEST(GraspPlanner, ToleranceIsUsedOnlyWhereNothingElseIsLeft)
+TEST(GraspPlanner, ToleranceIsUsedOnlyForPartsThatHaveNothingElse)
 {
   // Across the wall the fingers do not fit; spun by a quarter they do.
   PartDefinition part = partWith({graspFromAbove("top")});
@@ -591,10 +591,21 @@ TEST(GraspPlanner, ToleranceIsUsedOnlyWhereNothingElseIsLeft)
     EXPECT_GT(std::abs(grasp.spun), 0.5);
     EXPECT_TRUE((grasp.tip.grasp * grasp.T_tip_object).isApprox(at_wall.T_camera_object, 1e-9));
   }
-  const GraspSelection two = selectInBin({at_wall, detectionAt({0, 0, 0.07})}, part);
-  ASSERT_EQ(two.grasps.size(), 1u) << "as written in the middle of the bin";
-  EXPECT_EQ(two.grasps[0].detection_index, 1u);
-  EXPECT_EQ(two.grasps[0].spun, 0);
+  const std::vector<Detection> with_another = {at_wall, detectionAt({0, 0, 0.07})};
+  const GraspSelection two = selectInBin(with_another, part);
+  EXPECT_EQ(std::count_if(two.grasps.begin(), two.grasps.end(), [](const Grasp& g) { return g.detection_index == 1; }),
+            1)
+      << "as written in the middle of the bin, and not turned";
+  EXPECT_GT(two.grasps.size(), 1u) << "the one at the wall too";
+  for (const Grasp& grasp : two.grasps)
+    EXPECT_EQ(std::abs(grasp.spun) > 0.5, grasp.detection_index == 0);
+
+  GraspParameters parameters;
+  parameters.max_grasps = 1;
+  const GraspSelection one = selectInBin(with_another, part, parameters);
+  ASSERT_EQ(one.grasps.size(), 1u);
+  EXPECT_EQ(one.grasps[0].detection_index, 1u) << "what is written comes first";
+  EXPECT_EQ(one.grasps[0].spun, 0);
 }
 
 TEST(GraspPlanner, AGripperOfAnotherKindOrWidthIsRefused)

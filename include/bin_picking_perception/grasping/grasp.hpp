@@ -82,6 +82,6 @@ struct Grasp
 struct GraspSelection
 {
   std::vector<Grasp> grasps;    ///< pickable, best first
-  std::vector<Grasp> rejected;  ///< with reasons
+  std::vector<Grasp> rejected;  ///< with reasons; see GraspPlanner for what is listed
 };
 }  // namespace bin_picking

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,7 +11,6 @@
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/detector.hpp"
 #include "bin_picking_perception/grasping/grasp.hpp"
-#include "bin_picking_perception/grasping/grasp_expansion.hpp"
 #include "bin_picking_perception/grasping/grasp_parameters.hpp"
 #include "bin_picking_perception/grasping/gripper.hpp"
 #include "bin_picking_perception/model/part.hpp"
@@ -20,9 +18,18 @@
 
 namespace bin_picking
 {
+struct PreparedPart;
+
 /// From detections to grasps that a robot can take: each grasp of each part, expanded by symmetry and tolerance, is
 /// held against what a person would check, in this order: the detection, the gripper's opening, the avoid list, the
 /// tilt, the collisions of the whole way, the robot's reach. What remains is ranked. Immutable; thread-safe.
+///
+/// What is written comes first: copies turned or tilted by a tolerance are tried for detections that have no other
+/// grasp, in their order, as long as the answer has room (max_grasps), and up to a few for each.
+///
+/// The rejected are listed detection by detection: each grasp as written and each symmetric copy (one for all copies
+/// where the reason does not depend on the copy), and of the turned and tilted copies one for each grasp and kind of
+/// rejection that is not listed yet.
 class GraspPlanner
 {
 public:
@@ -64,7 +71,7 @@ public:
 private:
   Setup setup_;
   std::optional<Kinematics> kinematics_;
-  std::map<std::string, std::vector<GraspVariant>> variants_;  ///< per part
+  std::shared_ptr<const std::vector<PreparedPart>> prepared_;  ///< as setup_.parts
   Executor executor_;
 };
 }  // namespace bin_picking

@@ -11,6 +11,7 @@
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/common/parameters.hpp"
 #include "bin_picking_perception/grasping/gripper.hpp"
+#include "bin_picking_perception/grasping/tool_shape.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
 #include "bin_picking_perception/scene/bin.hpp"
 #include "bin_picking_perception/scene/depth_grid.hpp"
@@ -63,6 +64,7 @@ struct Clearance
   Eigen::Vector3d contact_camera = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
   bool free() const { return distance >= required; }
+  double margin() const { return distance - required; }
 };
 
 /// A detected part; the model must outlive the obstacles.
@@ -114,9 +116,19 @@ public:
   Clearance closing(const Gripper& gripper, const Pose& T_camera_tool0, double from, double to,
                     std::size_t target) const;
 
-  /// The way out: the gripper at the motion's opening, and the target held. That may touch what it touches at rest, but
-  /// go no deeper into it than `max_drag`.
+  /// The way out: the gripper at the motion's opening, and the target held: leaving(), then pulledOut().
   Clearance retreat(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const;
+
+  // The same with shapes that were made once for many ways; `motion.opening` is not looked at.
+
+  Clearance approach(const ToolShape& open, const ToolMotion& motion, std::size_t target) const;
+  Clearance closing(const ToolShape& closing, const Pose& T_camera_tool0, std::size_t target) const;
+  /// The gripper alone on the way out.
+  Clearance leaving(const ToolShape& closed, const ToolMotion& motion, std::size_t target) const;
+
+  /// The target alone on the way out. It may touch what it touches at rest, but go no deeper into it than `max_drag`.
+  /// The same for all grasps that retreat by the same motion (metres).
+  Clearance pulledOut(const Eigen::Vector3d& motion_camera, std::size_t target) const;
 
 private:
   struct Impl;

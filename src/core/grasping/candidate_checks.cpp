@@ -2,58 +2,20 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "candidate_checks.hpp"
 
-#include <cmath>
-#include <iomanip>
-#include <sstream>
+#include <algorithm>
 
 #include "bin_picking_perception/robot/reach.hpp"
+#include "figures.hpp"
 
 namespace bin_picking
 {
 namespace
 {
-std::string text(double value, int digits)
-{
-  std::ostringstream stream;
-  stream << std::fixed << std::setprecision(digits) << value;
-  return stream.str();
-}
-
-std::string millimetres(double value) { return text(1e3 * value, 1) + " mm"; }
-std::string degrees(double value) { return text(value * 180 / M_PI, 1) + " deg"; }
-std::string percent(double value) { return text(100 * value, 1) + " %"; }
-
 bool reject(Grasp& grasp, GraspRejection rejection, const std::string& reason)
 {
   grasp.rejection = rejection;
   grasp.reason = reason;
   return false;
-}
-
-/// A grasp without opening is one for a suction cup.
-bool checkKind(Grasp& grasp, const Gripper& gripper)
-{
-  const bool by_suction = grasp.opening == 0;
-  if (by_suction == (gripper.kind == Gripper::Kind::Suction))
-    return true;
-  return reject(grasp, GraspRejection::OtherGripper,
-                by_suction ? "The grasp is one for a suction cup (its opening is 0), the gripper \"" + gripper.name +
-                                 "\" has fingers."
-                           : "The grasp is one for fingers (its opening is " + millimetres(grasp.opening) +
-                                 "), the gripper \"" + gripper.name + "\" is a suction cup.");
-}
-
-bool checkOpening(Grasp& grasp, const Gripper& gripper)
-{
-  if (!(grasp.opening <= gripper.max_opening))
-    return reject(grasp, GraspRejection::OpeningTooSmall,
-                  "The grasp asks for an opening of " + millimetres(grasp.opening) + ", the gripper \"" + gripper.name +
-                      "\" opens to " + millimetres(gripper.max_opening) + ".");
-  if (!(grasp.width >= gripper.min_opening))
-    return reject(grasp, GraspRejection::ClosingTooSmall,
-                  "The part is " + millimetres(grasp.width) + " wide there, the gripper \"" + gripper.name +
-                      "\" closes to " + millimetres(gripper.min_opening) + ".");
-  return true;
 }
 
 GraspRejection rejectionFor(const Clearance& closest)
@@ -80,7 +42,7 @@ GraspRejection rejectionFor(const Clearance& closest)
 /// Keeps the passage that leaves the least room beyond what is required.
 bool passes(Grasp& grasp, const Clearance& closest, const char* phase)
 {
-  if (closest.distance - closest.required < grasp.clearance.distance - grasp.clearance.required)
+  if (closest.margin() < grasp.clearance.margin())
     grasp.clearance = closest;
   if (closest.free())
     return true;
@@ -107,25 +69,29 @@ GraspRejection rejectionFor(Reach::Failure failure)
 }
 }  // namespace
 
-bool checkDetection(Grasp& grasp, const GraspSurroundings& s)
+const Clearance& WayOut::along(const Eigen::Vector3d& motion_camera)
 {
-  const Detection& detection = s.scene.detection.detections[grasp.detection_index];
+  const auto known =
+      std::find_if(known_.begin(), known_.end(), [&](const Known& k) { return k.motion_camera == motion_camera; });
+  if (known != known_.end())
+    return known->clearance;
+  known_.push_back({motion_camera, obstacles_.pulledOut(motion_camera, target_)});
+  return known_.back().clearance;
+}
+
+Refusal checkDetection(std::size_t index, const GraspSurroundings& s)
+{
+  const Detection& detection = s.scene.detection.detections[index];
   const double required = s.setup.parameters.min_matching_rate;
   if (!(detection.matching_rate >= required))
-    return reject(grasp, GraspRejection::MatchingRateTooLow,
-                  "The matching rate of the part is " + percent(detection.matching_rate) + ", at least " +
-                      percent(required) + " is required (min_matching_rate).");
+    return {GraspRejection::MatchingRateTooLow, "The matching rate of the part is " + percent(detection.matching_rate) +
+                                                    ", at least " + percent(required) +
+                                                    " is required (min_matching_rate)."};
   if (detection.undetermined_turn && !s.request.accept_undetermined_turn)
-    return reject(grasp, GraspRejection::UndeterminedTurn,
-                  "Of the part, " + describe(*detection.undetermined_turn) +
-                      "; the caller does not accept that (accept_undetermined_turn).");
-  if (s.request.avoid)
-  {
-    const std::string why = s.request.avoid(grasp.detection_index);
-    if (!why.empty())
-      return reject(grasp, GraspRejection::Avoided, why);
-  }
-  return checkKind(grasp, s.setup.gripper) && checkOpening(grasp, s.setup.gripper);
+    return {GraspRejection::UndeterminedTurn, "Of the part, " + describe(*detection.undetermined_turn) +
+                                                  "; the caller does not accept that (accept_undetermined_turn)."};
+  const std::string why = s.request.avoid ? s.request.avoid(index) : std::string();
+  return {why.empty() ? GraspRejection::None : GraspRejection::Avoided, why};
 }
 
 bool checkTilt(Grasp& grasp, const GraspSurroundings& s)
@@ -138,26 +104,27 @@ bool checkTilt(Grasp& grasp, const GraspSurroundings& s)
                     degrees(s.setup.parameters.max_tilt) + " are allowed (max_tilt).");
 }
 
-bool checkCollision(Grasp& grasp, const GraspSurroundings& s)
+bool checkGripper(Grasp& grasp, const PreparedGrasp& prepared, const Eigen::Vector3d& out_camera,
+                  const Obstacles& obstacles)
 {
-  if (!s.obstacles)
-    return true;
   grasp.collision_checked = true;
-  const Gripper& gripper = s.setup.gripper;
   const std::size_t target = grasp.detection_index;
   const Eigen::Vector3d at_grasp = grasp.tool0.grasp.translation();
   const ToolMotion in{grasp.tool0.pre_grasp, at_grasp - grasp.tool0.pre_grasp.translation(), grasp.opening};
-  const ToolMotion out{grasp.tool0.grasp, grasp.tool0.retreat.translation() - at_grasp, grasp.width};
-  return passes(grasp, s.obstacles->approach(gripper, in, target), "On the way in") &&
-         passes(grasp, s.obstacles->closing(gripper, grasp.tool0.grasp, grasp.opening, grasp.width, target),
-                "While closing") &&
-         passes(grasp, s.obstacles->retreat(gripper, out, target), "On the way out");
+  const ToolMotion out{grasp.tool0.grasp, out_camera, grasp.width};
+  return passes(grasp, obstacles.approach(prepared.open, in, target), "On the way in") &&
+         passes(grasp, obstacles.closing(prepared.closing, grasp.tool0.grasp, target), "While closing") &&
+         passes(grasp, obstacles.leaving(prepared.closed, out, target), "On the way out");
+}
+
+bool checkHeldPart(Grasp& grasp, const Clearance& on_the_way_out)
+{
+  grasp.collision_checked = true;
+  return passes(grasp, on_the_way_out, "On the way out");
 }
 
 bool checkReach(Grasp& grasp, const GraspSurroundings& s)
 {
-  if (!s.kinematics)
-    return true;
   grasp.reach_checked = true;
   const Pose& T_base_camera = *s.scene.T_base_camera;
   const Reach found = reach(

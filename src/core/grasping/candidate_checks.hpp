@@ -2,7 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <vector>
+
 #include "bin_picking_perception/grasping/grasp_planner.hpp"
+#include "prepared_part.hpp"
 
 namespace bin_picking
 {
@@ -17,13 +20,38 @@ struct GraspSurroundings
   Eigen::Vector3d up_camera;               ///< out of the bin; without a bin towards the camera
 };
 
+/// How a part comes out of its surroundings, by the way it is lifted, which is the same for most of its grasps.
+class WayOut
+{
+public:
+  WayOut(const Obstacles& obstacles, std::size_t target) : obstacles_(obstacles), target_(target) {}
+
+  /// The reference holds until the next call.
+  const Clearance& along(const Eigen::Vector3d& motion_camera);
+
+private:
+  struct Known
+  {
+    Eigen::Vector3d motion_camera;
+    Clearance clearance;
+  };
+  const Obstacles& obstacles_;
+  std::size_t target_;
+  std::vector<Known> known_;
+};
+
+/// What holds for all grasps of a detection: its matching rate, an open turn, the avoid list.
+Refusal checkDetection(std::size_t index, const GraspSurroundings& s);
+
 // Each returns whether the grasp passed; if not, the rejection and its reason are filled in.
 
-/// What holds for all copies of a grasp: the detection, the gripper's opening, the avoid list.
-bool checkDetection(Grasp& grasp, const GraspSurroundings& s);
 bool checkTilt(Grasp& grasp, const GraspSurroundings& s);
-/// The whole way: open fingers in, closing, out with the part. Fills in the closest passage.
-bool checkCollision(Grasp& grasp, const GraspSurroundings& s);
-/// One configuration of the arm through the whole way. Fills in its joints.
+/// The gripper on the whole way: open in, closing, out. Fills in the closest passage.
+/// \param out_camera how the grasp is lifted, metres
+bool checkGripper(Grasp& grasp, const PreparedGrasp& prepared, const Eigen::Vector3d& out_camera,
+                  const Obstacles& obstacles);
+/// The part in the hand.
+bool checkHeldPart(Grasp& grasp, const Clearance& on_the_way_out);
+/// One configuration of the arm through the whole way. Fills in its joints. Needs the kinematics.
 bool checkReach(Grasp& grasp, const GraspSurroundings& s);
 }  // namespace bin_picking

@@ -3,136 +3,24 @@
 #include "bin_picking_perception/grasping/grasp_planner.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "candidate_checks.hpp"
-#include "grasp_ranking.hpp"
+#include "detection_grasps.hpp"
+#include "prepared_part.hpp"
 
 namespace bin_picking
 {
 namespace
 {
-/// One variant of one grasp of one detection.
-struct Attempt
-{
-  Grasp grasp;
-  bool open = false;  ///< nothing speaks against it so far
-};
-
-bool isNominal(const GraspVariant& variant) { return variant.tilt == 0 && variant.spin == 0; }
-
-GraspWay wayThrough(const Pose& T_camera_grasp, const GraspDefinition& definition, const Eigen::Vector3d& away)
-{
-  const Eigen::Vector3d approach = T_camera_grasp.linear().col(2);
-  GraspWay way;
-  way.pre_grasp = Eigen::Translation3d(-definition.approach * approach) * T_camera_grasp;
-  way.grasp = T_camera_grasp;
-  way.retreat = Eigen::Translation3d(definition.retreat * away) * T_camera_grasp;
-  return way;
-}
-
-GraspWay moved(const GraspWay& way, const Pose& T_tip_other)
-{
-  return {way.pre_grasp * T_tip_other, way.grasp * T_tip_other, way.retreat * T_tip_other};
-}
-
-/// Not finite where the gripper does not have the width: such a grasp is refused.
-GraspWay flangeWay(const GraspWay& tip, double width, const Gripper& gripper)
-{
-  Pose T_tip_tool0 = Pose::Identity();
-  if (width >= gripper.min_opening && width <= gripper.max_opening)
-    T_tip_tool0 = gripper.T_tool0_tip(width).inverse();
-  else
-    T_tip_tool0.translation().setConstant(std::numeric_limits<double>::quiet_NaN());
-  return moved(tip, T_tip_tool0);
-}
-
-Grasp makeGrasp(const Detection& detection, std::size_t index, const GraspDefinition& definition,
-                const GraspVariant& variant, const GraspSurroundings& s)
-{
-  Grasp grasp;
-  grasp.part = detection.part;
-  grasp.grasp_id = definition.id;
-  grasp.detection_index = index;
-  grasp.symmetry_variant = variant.symmetry_variant;
-  grasp.tilted = variant.tilt;
-  grasp.spun = variant.spin;
-  const Pose T_camera_grasp = detection.T_camera_object * variant.T_object_tip;
-  const Eigen::Vector3d approach = T_camera_grasp.linear().col(2);
-  const Eigen::Vector3d away = s.scene.bin ? s.up_camera : Eigen::Vector3d(-approach);
-  grasp.tip = wayThrough(T_camera_grasp, definition, away);
-  grasp.tool0 = flangeWay(grasp.tip, definition.width, s.setup.gripper);
-  grasp.T_tip_object = variant.T_tip_object;
-  grasp.undetermined_turn = detection.undetermined_turn.has_value();
-  grasp.width = definition.width;
-  grasp.opening = definition.opening;
-  grasp.priority = definition.priority;
-  grasp.tilt = std::acos(std::clamp(-approach.dot(s.up_camera), -1.0, 1.0));
-  return grasp;
-}
-
-const PartDefinition* definitionOf(const std::string& name, const std::vector<PartDefinition>& parts)
+/// Their number where there is none.
+std::size_t indexOf(const std::string& name, const std::vector<PartDefinition>& parts)
 {
   const auto part = std::find_if(parts.begin(), parts.end(), [&](const PartDefinition& p) { return p.name == name; });
-  return part == parts.end() ? nullptr : &*part;
+  return static_cast<std::size_t>(part - parts.begin());
 }
-
-/// Shares of the priority range of the part's grasps.
-double priorityShare(int priority, const PartDefinition& part)
-{
-  const auto less = [](const GraspDefinition& a, const GraspDefinition& b) { return a.priority < b.priority; };
-  const auto [lowest, highest] = std::minmax_element(part.grasps.begin(), part.grasps.end(), less);
-  const double range = static_cast<double>(highest->priority) - lowest->priority;
-  return range > 0 ? (static_cast<double>(priority) - lowest->priority) / range : 1.0;
-}
-
-/// What is checked at once for all copies of a grasp rules them all out: the first stands for them.
-class Expansion
-{
-public:
-  Expansion(const GraspSurroundings& s, const std::map<std::string, std::vector<GraspVariant>>& variants)
-      : s_(s), variants_(variants)
-  {}
-
-  /// All variants of the kind that is wanted, with the cheap checks done.
-  std::vector<Attempt> attempts(bool nominal) const
-  {
-    std::vector<Attempt> result;
-    for (std::size_t i = 0; i < s_.scene.detection.detections.size(); ++i)
-    {
-      const Detection& detection = s_.scene.detection.detections[i];
-      const PartDefinition* part = definitionOf(detection.part, s_.setup.parts);
-      if (part)
-        addAttempts(detection, i, *part, nominal, result);
-    }
-    return result;
-  }
-
-private:
-  void addAttempts(const Detection& detection, std::size_t index, const PartDefinition& part, bool nominal,
-                   std::vector<Attempt>& result) const
-  {
-    std::size_t ruled_out = part.grasps.size();  // index of the definition whose copies all fail
-    for (const GraspVariant& variant : variants_.at(part.name))
-    {
-      if (isNominal(variant) != nominal || variant.grasp == ruled_out)
-        continue;
-      Attempt attempt{makeGrasp(detection, index, part.grasps[variant.grasp], variant, s_)};
-      if (!checkDetection(attempt.grasp, s_))
-        ruled_out = variant.grasp;
-      else
-        attempt.open = checkTilt(attempt.grasp, s_);
-      result.push_back(std::move(attempt));
-    }
-  }
-
-  const GraspSurroundings& s_;
-  const std::map<std::string, std::vector<GraspVariant>>& variants_;
-};
 
 std::vector<PlacedPart> placedParts(const GraspPlanner::Scene& scene)
 {
@@ -142,45 +30,63 @@ std::vector<PlacedPart> placedParts(const GraspPlanner::Scene& scene)
   return parts;
 }
 
-bool anyOpen(const std::vector<Attempt>& attempts)
+/// The detections whose part is known.
+std::vector<DetectionGrasps> findable(const std::vector<PreparedPart>& parts, const GraspSurroundings& s)
 {
-  return std::any_of(attempts.begin(), attempts.end(), [](const Attempt& a) { return a.open; });
+  std::vector<DetectionGrasps> grasps;
+  const std::vector<Detection>& detections = s.scene.detection.detections;
+  grasps.reserve(detections.size());
+  for (std::size_t i = 0; i < detections.size(); ++i)
+  {
+    const std::size_t part = indexOf(detections[i].part, s.setup.parts);
+    if (part < parts.size())
+      grasps.emplace_back(i, s.setup.parts[part], parts[part], s);
+  }
+  return grasps;
 }
 
-void checkWays(std::vector<Attempt>& attempts, const GraspSurroundings& s, const Executor& executor)
+std::size_t mostGrasps(const GraspSurroundings& s)
 {
-  executor.forEach(attempts.size(), [&](std::size_t i) {
-    Attempt& attempt = attempts[i];
-    attempt.open = attempt.open && checkCollision(attempt.grasp, s) && checkReach(attempt.grasp, s);
-  });
+  const auto most = static_cast<std::size_t>(s.setup.parameters.max_grasps);
+  return s.request.max_grasps > 0 ? std::min(most, s.request.max_grasps) : most;
 }
 
-/// How much of a part nothing lies on: seen, among what faces the camera.
-GraspCandidate toCandidate(Grasp&& grasp, const GraspSurroundings& s)
+/// What is written comes first: turned and tilted copies only of parts that have nothing else, best detections first,
+/// and only as long as there is room for more grasps. A fixed number at a time, so that threads change nothing.
+void tryTurned(std::vector<DetectionGrasps>& grasps, std::size_t most, const Executor& executor)
 {
-  const Detection& detection = s.scene.detection.detections[grasp.detection_index];
-  GraspCandidate candidate;
-  candidate.score = detection.score;
-  candidate.uncovered = detection.visible_fraction;
-  candidate.priority = priorityShare(grasp.priority, *definitionOf(grasp.part, s.setup.parts));
-  candidate.height = grasp.tip.grasp.translation().dot(s.up_camera);
-  candidate.grasp = std::move(grasp);
-  return candidate;
+  constexpr std::size_t AT_A_TIME = 8;
+  std::size_t allowed = 0;
+  std::vector<DetectionGrasps*> without;
+  for (DetectionGrasps& of_one : grasps)
+  {
+    allowed += of_one.allowed.size();
+    if (of_one.isWithoutGrasp())
+      without.push_back(&of_one);
+  }
+  for (std::size_t begin = 0; begin < without.size() && allowed < most; begin += AT_A_TIME)
+  {
+    const std::size_t end = std::min(begin + AT_A_TIME, without.size());
+    executor.forEach(end - begin, [&](std::size_t i) { without[begin + i]->tryTurned(); });
+    for (std::size_t i = begin; i < end; ++i)
+      allowed += without[i]->allowed.size();
+  }
 }
 
-GraspSelection ranked(std::vector<Attempt>&& attempts, const GraspSurroundings& s)
+GraspSelection ranked(std::vector<DetectionGrasps>&& of_detections, std::size_t most, const GraspSurroundings& s)
 {
   GraspSelection selection;
+  std::size_t rejected = 0;
+  for (const DetectionGrasps& grasps : of_detections)
+    rejected += grasps.rejected.size();
+  selection.rejected.reserve(rejected);
   std::vector<GraspCandidate> allowed;
-  for (Attempt& attempt : attempts)
-    if (attempt.open)
-      allowed.push_back(toCandidate(std::move(attempt.grasp), s));
-    else
-      selection.rejected.push_back(std::move(attempt.grasp));
+  for (DetectionGrasps& grasps : of_detections)
+  {
+    std::move(grasps.allowed.begin(), grasps.allowed.end(), std::back_inserter(allowed));
+    std::move(grasps.rejected.begin(), grasps.rejected.end(), std::back_inserter(selection.rejected));
+  }
   selection.grasps = rankGrasps(std::move(allowed), s.setup.parameters);
-  auto most = static_cast<std::size_t>(s.setup.parameters.max_grasps);
-  if (s.request.max_grasps > 0)
-    most = std::min(most, s.request.max_grasps);
   if (selection.grasps.size() > most)
     selection.grasps.resize(most);
   return selection;
@@ -201,8 +107,10 @@ GraspPlanner::GraspPlanner(Setup setup) : setup_(std::move(setup)), executor_(se
   checkParameters(setup_);
   if (setup_.robot)
     kinematics_.emplace(*setup_.robot);
+  auto prepared = std::make_shared<std::vector<PreparedPart>>();
   for (const PartDefinition& part : setup_.parts)
-    variants_[part.name] = expandGrasps(part, setup_.parameters.continuous_symmetry_steps);
+    prepared->push_back(preparePart(part, setup_.gripper, setup_.parameters.continuous_symmetry_steps));
+  prepared_ = std::move(prepared);
 }
 
 GraspSelection GraspPlanner::plan(const Scene& scene, const Request& request) const
@@ -222,16 +130,9 @@ GraspSelection GraspPlanner::plan(const Scene& scene, const Request& request) co
                             scene.bin ? Eigen::Vector3d(scene.bin->T_camera_bin.linear().col(2))
                                       : Eigen::Vector3d(-Eigen::Vector3d::UnitZ())};
 
-  const Expansion expansion(s, variants_);
-  std::vector<Attempt> attempts = expansion.attempts(true);
-  checkWays(attempts, s, executor_);
-  if (!anyOpen(attempts))  // what is written comes first: turned and tilted copies only where nothing else is left
-  {
-    std::vector<Attempt> others = expansion.attempts(false);
-    checkWays(others, s, executor_);
-    std::move(others.begin(), others.end(), std::back_inserter(attempts));
-  }
-  return ranked(std::move(attempts), s);
+  std::vector<DetectionGrasps> grasps = findable(*prepared_, s);
+  executor_.forEach(grasps.size(), [&](std::size_t i) { grasps[i].tryAsWritten(); });
+  tryTurned(grasps, mostGrasps(s), executor_);
+  return ranked(std::move(grasps), mostGrasps(s), s);
 }
-
 }  // namespace bin_picking

@@ -3,7 +3,6 @@
 #include "bin_picking_perception/grasping/obstacles.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -11,7 +10,6 @@
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_sides.hpp"
 #include "body_sweep.hpp"
-#include "gripper_sweeps.hpp"
 #include "held_part.hpp"
 #include "seen_space.hpp"
 #include "surface_blocks.hpp"
@@ -75,11 +73,14 @@ struct Obstacles::Impl
     part.T_camera_object = T;
     for (int k = 0; k < 8; ++k)
       part.box_camera.extend(T * part.surface->box().corner(static_cast<Eigen::AlignedBox3f::CornerType>(k)));
+  }
+
+  void findPixels(std::size_t i)
+  {
+    Part& part = parts[i];
     const DistanceField& field = part.placed.model->field;
-    if (seen)
-      part.pixels =
-          seen->ownPixels(field, part.surface->box(), part.placed.T_camera_object,
-                          std::min(static_cast<float>(parameters.target_tolerance), BAND_SHARE * field.band()));
+    part.pixels = seen->ownPixels(field, part.surface->box(), part.placed.T_camera_object,
+                                  std::min(static_cast<float>(parameters.target_tolerance), BAND_SHARE * field.band()));
   }
 
   void meetBin(const BodySweep& body, Encounter& worst) const
@@ -186,26 +187,27 @@ struct Obstacles::Impl
     return clearance;
   }
 
-  /// Keeps the worst of all sweeps, up to the first that comes too near.
-  struct Watch
+  /// The worst of all pieces, up to the first that comes too near.
+  Clearance sweep(const ToolShape& tool, const Pose& T_camera_tool0, const Eigen::Vector3d& motion_camera,
+                  std::size_t target, bool target_counts) const
   {
-    const Impl& impl;
-    std::size_t target;
-    bool target_counts;
-    Encounter worst = {};
-    std::size_t body = 0;
-
-    bool operator()(const GripperSweep& sweep)
+    checkTarget(target);
+    Encounter worst;
+    const ToolPiece* of = nullptr;
+    for (const ToolPiece& piece : tool)
     {
-      const Encounter met = impl.meet(sweep.sweep, target, target_counts && !sweep.may_touch_target);
+      const BodySweep body(swept(transformed(piece.shape, T_camera_tool0), motion_camera));
+      const Encounter met = meet(body, target, target_counts && !piece.may_touch_target);
       if (met.margin() < worst.margin())
       {
         worst = met;
-        body = sweep.body;
+        of = &piece;
       }
-      return worst.free();
+      if (!worst.free())
+        break;
     }
-  };
+    return inWords(worst, of ? of->body : "");
+  }
 };
 
 Obstacles::Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<PlacedPart> parts,
@@ -235,7 +237,15 @@ Obstacles::Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<Plac
   });
   for (Impl::Part& part : impl->parts)
     part.surface = impl->surfaces.at(part.placed.model).get();
-  executor.forEach(impl->parts.size(), [&](std::size_t i) { impl->preparePart(i); });
+  for (std::size_t i = 0; i < impl->parts.size(); ++i)
+    impl->preparePart(i);
+  if (impl->seen)  // the longest first
+    executor.forEach(SeenSpace::STEPS + impl->parts.size(), [&](std::size_t i) {
+      if (i < SeenSpace::STEPS)
+        impl->seen->prepare(i);
+      else
+        impl->findPixels(i - SeenSpace::STEPS);
+    });
   impl_ = std::move(impl);
 }
 
@@ -243,34 +253,44 @@ Obstacles::~Obstacles() = default;
 Obstacles::Obstacles(Obstacles&&) noexcept = default;
 Obstacles& Obstacles::operator=(Obstacles&&) noexcept = default;
 
+Clearance Obstacles::approach(const ToolShape& open, const ToolMotion& motion, std::size_t target) const
+{
+  return impl_->sweep(open, motion.T_camera_tool0, motion.motion_camera, target, true);
+}
+
+Clearance Obstacles::closing(const ToolShape& closing, const Pose& T_camera_tool0, std::size_t target) const
+{
+  return impl_->sweep(closing, T_camera_tool0, Eigen::Vector3d::Zero(), target, true);
+}
+
+Clearance Obstacles::leaving(const ToolShape& closed, const ToolMotion& motion, std::size_t target) const
+{
+  return impl_->sweep(closed, motion.T_camera_tool0, motion.motion_camera, target, false);
+}
+
 Clearance Obstacles::approach(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const
 {
-  impl_->checkTarget(target);
-  Impl::Watch watch{*impl_, target, true};
-  visitSweeps(gripper, motion, std::ref(watch));
-  return impl_->inWords(watch.worst, gripper.bodies[watch.body].name);
+  return approach(shapeAt(gripper, motion.opening), motion, target);
 }
 
 Clearance Obstacles::closing(const Gripper& gripper, const Pose& T_camera_tool0, double from, double to,
                              std::size_t target) const
 {
+  return closing(closingShape(gripper, from, to), T_camera_tool0, target);
+}
+
+Clearance Obstacles::pulledOut(const Eigen::Vector3d& motion_camera, std::size_t target) const
+{
   impl_->checkTarget(target);
-  Impl::Watch watch{*impl_, target, true};
-  visitClosingSweeps(gripper, T_camera_tool0, from, to, std::ref(watch));
-  return impl_->inWords(watch.worst, gripper.bodies[watch.body].name);
+  return impl_->inWords(impl_->meetHeld(motion_camera, target), "held part");
 }
 
 Clearance Obstacles::retreat(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const
 {
-  impl_->checkTarget(target);
-  Impl::Watch watch{*impl_, target, false};
-  visitSweeps(gripper, motion, std::ref(watch));
-  if (watch.worst.free())
-  {
-    const Encounter of_part = impl_->meetHeld(motion.motion_camera, target);
-    if (of_part.margin() < watch.worst.margin())
-      return impl_->inWords(of_part, "held part");
-  }
-  return impl_->inWords(watch.worst, gripper.bodies[watch.body].name);
+  const Clearance of_gripper = leaving(shapeAt(gripper, motion.opening), motion, target);
+  if (!of_gripper.free())
+    return of_gripper;
+  const Clearance of_part = pulledOut(motion.motion_camera, target);
+  return of_part.margin() < of_gripper.margin() ? of_part : of_gripper;
 }
 }  // namespace bin_picking

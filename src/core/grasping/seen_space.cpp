@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "seen_space_lanes.hpp"
@@ -43,13 +44,22 @@ std::vector<Eigen::Vector3d> cornersOf(const Bin& bin)
 }  // namespace
 
 SeenSpace::SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstacleParameters& parameters)
-    : surface_clearance_(static_cast<float>(parameters.surface_clearance))
+    : surface_clearance_(static_cast<float>(parameters.surface_clearance)),
+      unseen_entry_(static_cast<float>(parameters.unseen_entry)),
+      shadow_entry_(static_cast<float>(parameters.shadow_entry))
 {
   extendTo(measured, bin);
   bridgeGaps(measured, bin);
-  allowed_ = allowedDepth(static_cast<float>(parameters.unseen_entry));
-  allowed_own_ = allowedDepth(static_cast<float>(parameters.shadow_entry));
-  findBlockMinima();
+}
+
+void SeenSpace::prepare(std::size_t step)
+{
+  if (step == 0)
+    allowed_own_ = allowedDepth(shadow_entry_);
+  else
+    allowed_ = allowedDepth(unseen_entry_);
+  if (step == 1)
+    findBlockMinima();
 }
 
 void SeenSpace::extendTo(const DepthGrid& measured, const Bin* bin)
@@ -150,20 +160,28 @@ std::vector<float> SeenSpace::allowedDepth(float entry) const
     if (measured_[i] != 0)
       farthest = std::max(farthest, depth_[i]);
   const int reach = farthest > 0 ? static_cast<int>(entry * std::sqrt(fx_ * fy_) / farthest) : 0;
-  std::vector<float> rows = depth_;
-  std::vector<float> allowed(depth_.size());
-  const int height = static_cast<int>(depth_.size()) / stride_;
-  for (int v = 0; v < height; ++v)
-    for (int k = -reach; k <= reach; ++k)
-      raiseTo(&depth_[index(std::max(0, k), v)], static_cast<std::size_t>(std::max(0, width_ - std::abs(k))),
-              &rows[index(std::max(0, -k), v)]);
-  allowed = rows;
-  for (int v = 0; v < height_; ++v)
-    for (int k = -reach; k <= reach; ++k)
-      if (v + k >= 0 && v + k < height_)
-        raiseTo(&rows[index(0, v + k)], static_cast<std::size_t>(width_), &allowed[index(0, v)]);
+  const auto stride = static_cast<std::size_t>(stride_);
+  const auto width = static_cast<std::size_t>(width_);
+  const auto margin = static_cast<std::size_t>(reach);
+  const std::size_t window = 2 * margin + 1;
+  std::vector<float> allowed(depth_.size() + 2 * margin * stride, 0.0f);
+  std::vector<float> row(width + 2 * margin);
+  for (std::size_t v = 0; v < static_cast<std::size_t>(height_); ++v)
+  {
+    std::fill(row.begin(), row.end(), 0.0f);
+    std::copy_n(&depth_[v * stride], width, row.begin() + reach);
+    raiseToWindow(row.data(), row.size(), 1, window);
+    std::copy_n(row.begin(), width, &allowed[(v + margin) * stride]);
+  }
+  raiseToWindow(allowed.data(), allowed.size(), stride, window);
+  allowed.resize(depth_.size());
   for (float& depth : allowed)
     depth += entry;
+  // What fills up the last blocks is no part of the picture.
+  const auto rows = static_cast<std::size_t>(height_);
+  std::fill(allowed.begin() + static_cast<std::ptrdiff_t>(rows * stride), allowed.end(), FAR_AWAY + entry);
+  for (std::size_t v = 0; v < rows; ++v)
+    std::fill_n(&allowed[v * stride + width], stride - width, FAR_AWAY + entry);
   return allowed;
 }
 
@@ -230,20 +248,28 @@ OwnPixels SeenSpace::ownPixels(const DistanceField& field, const Eigen::AlignedB
   const Eigen::Isometry3f T_object(T_camera_object.inverse().cast<float>());
   const float nearest = box.min().z() - tolerance;
   const float farthest = box.max().z() + tolerance;
-  const auto isOwn = [&](std::size_t i) {
-    if (!(depth_[i] >= nearest && depth_[i] <= farthest))
-      return false;
-    const auto u = static_cast<int>(i) % stride_;
-    const auto v = static_cast<int>(i) / stride_;
-    return std::abs(field.at(T_object * pointAt(u, v))) <= tolerance;
+  const auto isOwn = [&](std::size_t i, int u, int v) {
+    return depth_[i] >= nearest && depth_[i] <= farthest &&
+           std::abs(field.at(T_object * (depth_[i] * ray(u, v)))) <= tolerance;
+  };
+  const auto ownAt = [&](int u, int v) -> std::uint8_t& {
+    return pixels.own[static_cast<std::size_t>((v - w.top) * pixels.width + u - w.left)];
   };
   for (int v = w.top; v < w.bottom; ++v)
     for (int u = w.left; u < w.right; ++u)
+      if (measured_[index(u, v)] != 0)
+        ownAt(u, v) = isOwn(index(u, v), u, v) ? 1 : 0;
+  // Of what is hidden, many pixels have the same end of a bridge: most of these are known by now.
+  for (int v = w.top; v < w.bottom; ++v)
+    for (int u = w.left; u < w.right; ++u)
     {
-      const std::size_t i = index(u, v);
-      const bool own =
-          measured_[i] != 0 ? isOwn(i) : hidden_by_[i] >= 0 && isOwn(static_cast<std::size_t>(hidden_by_[i]));
-      pixels.own[static_cast<std::size_t>((v - w.top) * pixels.width + u - w.left)] = own ? 1 : 0;
+      const std::int32_t end = hidden_by_[index(u, v)];
+      if (end < 0)
+        continue;
+      const int x = end % stride_;
+      const int y = end / stride_;
+      const bool inside = x >= w.left && x < w.right && y >= w.top && y < w.bottom;
+      ownAt(u, v) = inside ? ownAt(x, y) : isOwn(static_cast<std::size_t>(end), x, y) ? 1 : 0;
     }
   return pixels;
 }
@@ -289,23 +315,22 @@ struct SeenSpace::Search
   void pixels(int u, int v)
   {
     const std::size_t first = space.index(u, v);
+    const std::uint8_t own = target.inRow(u, v);
     Lanes lanes;
-    std::array<bool, BLOCK> own{};
-    for (int k = 0; k < BLOCK; ++k)
-    {
-      const std::size_t i = first + static_cast<std::size_t>(k);
-      own[static_cast<std::size_t>(k)] = target.at(u + k, v);
-      lanes.depth[k] = space.depth_[i];
-      lanes.allowed[k] = own[static_cast<std::size_t>(k)] ? space.allowed_own_[i] : space.allowed_[i];
-    }
-    meet(body.planes, space.ray(u, v), 1 / space.fx_, lanes);
+    std::memcpy(lanes.depth, &space.depth_[first], sizeof(lanes.depth));
+    std::memcpy(lanes.allowed, &space.allowed_[first], sizeof(lanes.allowed));
+    for (int k = 0; own != 0 && k < BLOCK; ++k)
+      if (own >> k & 1)
+        lanes.allowed[k] = space.allowed_own_[first + static_cast<std::size_t>(k)];
+    if (!meet(body.planes, space.ray(u, v), 1 / space.fx_, LOOK_AHEAD, lanes))
+      return;
     for (int k = 0; k < BLOCK; ++k)
     {
       if (lanes.beyond[k] > 0)
         keepWorse(unseen, {-lanes.beyond[k], 0, ObstacleKind::Unknown, -1,
                            (lanes.allowed[k] + lanes.beyond[k]) * space.ray(u + k, v)});
       if (lanes.distance[k] < LOOK_AHEAD && space.measured_[first + static_cast<std::size_t>(k)] != 0 &&
-          !own[static_cast<std::size_t>(k)])
+          !(own >> k & 1))
         keepWorse(surface,
                   {lanes.distance[k], space.surface_clearance_, ObstacleKind::Surface, -1, space.pointAt(u + k, v)});
     }

@@ -25,6 +25,17 @@ struct OwnPixels
     const int y = v - top;
     return x >= 0 && y >= 0 && x < width && y < height && own[static_cast<std::size_t>(y * width + x)] != 0;
   }
+
+  /// Eight pixels from one on, a bit for each.
+  std::uint8_t inRow(int u, int v) const
+  {
+    if (v < top || v >= top + height || u >= left + width || u + 8 <= left)
+      return 0;
+    unsigned bits = 0;
+    for (int k = 0; k < 8; ++k)
+      bits |= at(u + k, v) ? 1u << k : 0u;
+    return static_cast<std::uint8_t>(bits);
+  }
 };
 
 /// What the camera saw: per pixel's ray how far it is free. In the camera's own frame, so that each ray is exact and no
@@ -33,6 +44,10 @@ class SeenSpace
 {
 public:
   SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstacleParameters& parameters);
+
+  /// The rest of the making: steps 0 to STEPS - 1, which may run at once, before nearest() is asked.
+  static constexpr std::size_t STEPS = 2;
+  void prepare(std::size_t step);
 
   OwnPixels ownPixels(const DistanceField& field, const Eigen::AlignedBox3f& box_object, const Pose& T_camera_object,
                       float tolerance) const;
@@ -97,5 +112,7 @@ private:
   std::vector<float> allowed_own_;    ///< the same for pixels of the target
   std::vector<float> block_nearest_;  ///< smallest depth of each block of pixels
   float surface_clearance_ = 0;
+  float unseen_entry_ = 0;
+  float shadow_entry_ = 0;
 };
 }  // namespace bin_picking

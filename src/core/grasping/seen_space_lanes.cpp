@@ -6,7 +6,7 @@
 
 namespace bin_picking
 {
-void meet(const Planes& planes, const Eigen::Vector3f& ray, float step, Lanes& lanes)
+bool meet(const Planes& planes, const Eigen::Vector3f& ray, float step, float near, Lanes& lanes)
 {
   constexpr float NEVER = std::numeric_limits<float>::max();
   constexpr float PARALLEL = 1e-20f;  // in place of zero, so that the crossing lies far off on the right side
@@ -37,16 +37,33 @@ void meet(const Planes& planes, const Eigen::Vector3f& ray, float step, Lanes& l
       leaves[k] = along > 0.0f ? earlier : leaves[k];
     }
   }
+  float nearest = NEVER;
+  float farthest = 0;
   for (int k = 0; k < BLOCK; ++k)
   {
     lanes.distance[k] = distance[k];
     lanes.beyond[k] = leaves[k] > enters[k] ? leaves[k] - lanes.allowed[k] : 0.0f;
+    nearest = distance[k] < nearest ? distance[k] : nearest;
+    farthest = lanes.beyond[k] > farthest ? lanes.beyond[k] : farthest;
   }
+  return nearest < near || farthest > 0;
 }
 
-void raiseTo(const float* __restrict other, std::size_t count, float* __restrict values)
+namespace
 {
-  for (std::size_t i = 0; i < count; ++i)
-    values[i] = other[i] > values[i] ? other[i] : values[i];
+void raiseToAhead(float* values, std::size_t count, std::size_t ahead)
+{
+  for (std::size_t i = 0; i + ahead < count; ++i)
+    values[i] = values[i + ahead] > values[i] ? values[i + ahead] : values[i];
+}
+}  // namespace
+
+void raiseToWindow(float* values, std::size_t count, std::size_t step, std::size_t window)
+{
+  std::size_t covered = 1;
+  for (; 2 * covered <= window; covered *= 2)
+    raiseToAhead(values, count, covered * step);
+  if (covered < window)
+    raiseToAhead(values, count, (window - covered) * step);
 }
 }  // namespace bin_picking

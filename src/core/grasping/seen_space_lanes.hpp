@@ -20,8 +20,10 @@ struct Lanes
 };
 
 /// Fills distance and beyond. \param ray of the first pixel, z = 1 \param step of the rays' x from pixel to pixel
-void meet(const Planes& planes, const Eigen::Vector3f& ray, float step, Lanes& lanes);
+/// \return whether any distance is less than `near`, or the body goes beyond what is allowed
+bool meet(const Planes& planes, const Eigen::Vector3f& ray, float step, float near, Lanes& lanes);
 
-/// Each value at least that of the other row.
-void raiseTo(const float* other, std::size_t count, float* values);
+/// Each value becomes the largest of `window` values, itself the first, each `step` after the one before. Values beyond
+/// the end do not count. In place.
+void raiseToWindow(float* values, std::size_t count, std::size_t step, std::size_t window);
 }  // namespace bin_picking

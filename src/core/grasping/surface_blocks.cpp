@@ -11,6 +11,34 @@ namespace
 {
 // Cells along the longest edge: some dozen points per block of a part with a few thousand.
 constexpr float CELLS = 12;
+
+/// Distances of points from a body, as far as they are less than a limit. Neighbours are most often told by the same
+/// face: it is asked first.
+class Probe
+{
+public:
+  explicit Probe(const Planes& planes) : planes_(planes) {}
+
+  /// The signed distance if it is less than `limit`; else something that is not.
+  float distanceBelow(float limit, const Eigen::Vector3f& p)
+  {
+    float distance = of(told_, p);
+    for (std::size_t i = 0; distance < limit && i < planes_.size(); ++i)
+    {
+      const float other = of(i, p);
+      if (other >= limit)
+        told_ = i;
+      distance = std::max(distance, other);
+    }
+    return distance;
+  }
+
+private:
+  float of(std::size_t i, const Eigen::Vector3f& p) const { return planes_[i].head<3>().dot(p) + planes_[i].w(); }
+
+  const Planes& planes_;
+  std::size_t told_ = 0;
+};
 }  // namespace
 
 SurfaceBlocks::SurfaceBlocks(const std::vector<Eigen::Vector3f>& points)
@@ -48,13 +76,15 @@ SurfaceBlocks::SurfaceBlocks(const std::vector<Eigen::Vector3f>& points)
 
 void SurfaceBlocks::deepest(const Planes& planes, float& limit, Eigen::Vector3f& point) const
 {
+  Probe probe(planes);
   for (const Block& block : blocks_)
   {
-    if (signedDistance(planes, block.center) - block.radius >= limit)
+    const float farthest = limit + block.radius;
+    if (probe.distanceBelow(farthest, block.center) >= farthest)
       continue;
     for (std::size_t k = block.begin; k < block.end; ++k)
     {
-      const float distance = signedDistance(planes, points_[k]);
+      const float distance = probe.distanceBelow(limit, points_[k]);
       if (distance < limit)
       {
         limit = distance;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
-#include "gripper_sweeps.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/grasping/tool_shape.hpp"
 
 namespace bin_picking
 {
@@ -120,18 +119,17 @@ ConvexBody between(const Gripper& gripper, std::size_t body, double from, double
 }
 }  // namespace
 
-void visitSweeps(const Gripper& gripper, const ToolMotion& motion, const SweepVisitor& visit)
+ToolShape shapeAt(const Gripper& gripper, double opening)
 {
+  ToolShape pieces;
   for (const std::size_t i : orderOf(gripper))
-    if (!visit({i, false,
-                BodySweep(swept(transformed(gripper.bodyAt(i, motion.opening), motion.T_camera_tool0),
-                                motion.motion_camera))}))
-      return;
+    pieces.push_back({gripper.bodies[i].name, false, gripper.bodyAt(i, opening)});
+  return pieces;
 }
 
-void visitClosingSweeps(const Gripper& gripper, const Pose& T_camera_tool0, double from, double to,
-                        const SweepVisitor& visit)
+ToolShape closingShape(const Gripper& gripper, double from, double to)
 {
+  ToolShape pieces;
   for (const std::size_t i : orderOf(gripper))
   {
     const GripperBody& body = gripper.bodies[i];
@@ -139,9 +137,8 @@ void visitClosingSweeps(const Gripper& gripper, const Pose& T_camera_tool0, doub
       continue;  // it rests where the way in has already checked it
     const std::vector<double> stops = stopsOf(body, from, to);
     for (std::size_t k = 1; k < stops.size(); ++k)
-      if (!visit({i, body.touches_part,
-                  BodySweep(transformed(between(gripper, i, stops[k - 1], stops[k]), T_camera_tool0))}))
-        return;
+      pieces.push_back({body.name, body.touches_part, between(gripper, i, stops[k - 1], stops[k])});
   }
+  return pieces;
 }
 }  // namespace bin_picking

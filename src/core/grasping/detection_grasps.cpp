@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "detection_grasps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace bin_picking
+{
+namespace
+{
+// Of the ways that only a tolerance allows, a robot needs one; a few more leave it a choice.
+constexpr std::size_t ENOUGH_TURNED = 4;
+
+// Approaches steeper than allowed by this much are told by their direction alone; the rest is looked at exactly.
+constexpr double ROUNDING = 1e-9;  // of the cosine
+
+GraspWay moved(const GraspWay& way, const Pose& T_tip_other)
+{
+  return {way.pre_grasp * T_tip_other, way.grasp * T_tip_other, way.retreat * T_tip_other};
+}
+}  // namespace
+
+DetectionGrasps::DetectionGrasps(std::size_t index, const PartDefinition& definition, const PreparedPart& part,
+                                 const GraspSurroundings& s)
+    : s_(s),
+      index_(index),
+      detection_(s.scene.detection.detections[index]),
+      definition_(definition),
+      part_(part),
+      up_object_(detection_.T_camera_object.linear().transpose() * s.up_camera),
+      listed_(part.grasps.size()),
+      refusal_(checkDetection(index, s))
+{
+  if (s.obstacles)
+    way_out_.emplace(*s.obstacles, index);
+}
+
+void DetectionGrasps::tryAsWritten()
+{
+  rejected.reserve(part_.as_written);
+  for (std::size_t v = 0; v < part_.as_written; ++v)
+    asWritten(part_.variants[v]);
+}
+
+void DetectionGrasps::tryTurned()
+{
+  for (std::size_t v = part_.as_written; v < part_.variants.size() && allowed.size() < ENOUGH_TURNED; ++v)
+    turned(v);
+}
+
+/// What is checked at once for all copies of a grasp rules them all out: the first stands for them.
+void DetectionGrasps::asWritten(const GraspVariant& variant)
+{
+  const std::size_t g = variant.grasp;
+  const Refusal& refusal = refusal_.rejection != GraspRejection::None ? refusal_ : part_.grasps[g].refusal;
+  const bool refused = refusal.rejection != GraspRejection::None;
+  if (refused && listed_[g].any())
+    return;
+  Grasp grasp = makeGrasp(variant);
+  if (refused)
+  {
+    grasp.rejection = refusal.rejection;
+    grasp.reason = refusal.reason;
+  }
+  else if (checkTilt(grasp, s_) && isFree(grasp, g) && comesOut(grasp, g) && isReached(grasp))
+    return allow(std::move(grasp), g);
+  list(std::move(grasp), g);
+}
+
+/// What others hold down, no turn of the gripper brings out: that is looked at first.
+void DetectionGrasps::turned(std::size_t v)
+{
+  const std::size_t g = part_.variants[v].grasp;
+  if (part_.grasps[g].refusal.rejection != GraspRejection::None ||
+      (isListed(g, GraspRejection::TiltTooLarge) && isTooSteep(v)))
+    return;
+  if (s_.scene.bin && isListed(g, GraspRejection::HeldPartCollision))
+    return;
+  Grasp grasp = makeGrasp(part_.variants[v]);
+  if (checkTilt(grasp, s_) && comesOut(grasp, g) && isFree(grasp, g) && isReached(grasp))
+    allow(std::move(grasp), g);
+  else if (!isListed(g, grasp.rejection))
+    list(std::move(grasp), g);
+}
+
+bool DetectionGrasps::isListed(std::size_t g, GraspRejection rejection) const
+{
+  return listed_[g].test(static_cast<std::size_t>(rejection));
+}
+
+bool DetectionGrasps::isTooSteep(std::size_t v) const
+{
+  return -part_.approaches_object[v].dot(up_object_) < std::cos(s_.setup.parameters.max_tilt) - ROUNDING;
+}
+
+bool DetectionGrasps::isFree(Grasp& grasp, std::size_t g) const
+{
+  return !s_.obstacles || checkGripper(grasp, part_.grasps[g], outOf(grasp, g), *s_.obstacles);
+}
+bool DetectionGrasps::comesOut(Grasp& grasp, std::size_t g)
+{
+  return !s_.obstacles || checkHeldPart(grasp, way_out_->along(outOf(grasp, g)));
+}
+bool DetectionGrasps::isReached(Grasp& grasp) const { return !s_.kinematics || checkReach(grasp, s_); }
+
+/// Metres. By the definition, so that it is the same for all grasps: a difference of poses would be so to rounding.
+Eigen::Vector3d DetectionGrasps::outOf(const Grasp& grasp, std::size_t g) const
+{
+  return definition_.grasps[g].retreat * awayFrom(grasp.tip.grasp);
+}
+
+Eigen::Vector3d DetectionGrasps::awayFrom(const Pose& T_camera_grasp) const
+{
+  return s_.scene.bin ? s_.up_camera : Eigen::Vector3d(-T_camera_grasp.linear().col(2));
+}
+
+Grasp DetectionGrasps::makeGrasp(const GraspVariant& variant) const
+{
+  const GraspDefinition& definition = definition_.grasps[variant.grasp];
+  Grasp grasp;
+  grasp.part = detection_.part;
+  grasp.grasp_id = definition.id;
+  grasp.detection_index = index_;
+  grasp.symmetry_variant = variant.symmetry_variant;
+  grasp.tilted = variant.tilt;
+  grasp.spun = variant.spin;
+  grasp.tip = wayThrough(detection_.T_camera_object * variant.T_object_tip, definition);
+  grasp.tool0 = moved(grasp.tip, part_.grasps[variant.grasp].T_tip_tool0);
+  grasp.T_tip_object = variant.T_tip_object;
+  grasp.undetermined_turn = detection_.undetermined_turn.has_value();
+  grasp.width = definition.width;
+  grasp.opening = definition.opening;
+  grasp.priority = definition.priority;
+  grasp.tilt = std::acos(std::clamp(-grasp.tip.grasp.linear().col(2).dot(s_.up_camera), -1.0, 1.0));
+  return grasp;
+}
+
+GraspWay DetectionGrasps::wayThrough(const Pose& T_camera_grasp, const GraspDefinition& definition) const
+{
+  const Eigen::Vector3d approach = T_camera_grasp.linear().col(2);
+  GraspWay way;
+  way.pre_grasp = Eigen::Translation3d(-definition.approach * approach) * T_camera_grasp;
+  way.grasp = T_camera_grasp;
+  way.retreat = Eigen::Translation3d(definition.retreat * awayFrom(T_camera_grasp)) * T_camera_grasp;
+  return way;
+}
+
+/// How much of a part nothing lies on: seen, among what faces the camera.
+void DetectionGrasps::allow(Grasp&& grasp, std::size_t g)
+{
+  GraspCandidate candidate;
+  candidate.score = detection_.score;
+  candidate.uncovered = detection_.visible_fraction;
+  candidate.priority = part_.grasps[g].priority_share;
+  candidate.height = grasp.tip.grasp.translation().dot(s_.up_camera);
+  candidate.grasp = std::move(grasp);
+  allowed.push_back(std::move(candidate));
+}
+
+void DetectionGrasps::list(Grasp&& grasp, std::size_t g)
+{
+  listed_[g].set(static_cast<std::size_t>(grasp.rejection));
+  rejected.push_back(std::move(grasp));
+}
+}  // namespace bin_picking

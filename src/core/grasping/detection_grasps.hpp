@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#pragma once
+
+#include <bitset>
+#include <optional>
+#include <vector>
+
+#include "candidate_checks.hpp"
+#include "grasp_ranking.hpp"
+#include "prepared_part.hpp"
+
+namespace bin_picking
+{
+/// The grasps of one detection, as far as they were looked at.
+class DetectionGrasps
+{
+public:
+  /// All but the index must outlive this.
+  DetectionGrasps(std::size_t index, const PartDefinition& definition, const PreparedPart& part,
+                  const GraspSurroundings& s);
+
+  /// All grasps as written, and their symmetric copies.
+  void tryAsWritten();
+
+  /// Those that use a tolerance, up to the first few that are allowed. One that is not is listed if no other of its
+  /// grasp was rejected for the like: there may be thousands, and they differ by little.
+  void tryTurned();
+
+  /// Whether turning may help: nothing is allowed, and no reason holds for all grasps.
+  bool isWithoutGrasp() const { return allowed.empty() && refusal_.rejection == GraspRejection::None; }
+
+  std::vector<GraspCandidate> allowed;  ///< in the order of the variants, not yet ranked
+  std::vector<Grasp> rejected;
+
+private:
+  void asWritten(const GraspVariant& variant);
+  void turned(std::size_t v);
+  bool isListed(std::size_t g, GraspRejection rejection) const;
+  bool isTooSteep(std::size_t v) const;
+  bool isFree(Grasp& grasp, std::size_t g) const;
+  bool comesOut(Grasp& grasp, std::size_t g);
+  bool isReached(Grasp& grasp) const;
+  Eigen::Vector3d outOf(const Grasp& grasp, std::size_t g) const;
+  Eigen::Vector3d awayFrom(const Pose& T_camera_grasp) const;
+  Grasp makeGrasp(const GraspVariant& variant) const;
+  GraspWay wayThrough(const Pose& T_camera_grasp, const GraspDefinition& definition) const;
+  void allow(Grasp&& grasp, std::size_t g);
+  void list(Grasp&& grasp, std::size_t g);
+
+  const GraspSurroundings& s_;
+  std::size_t index_;
+  const Detection& detection_;
+  const PartDefinition& definition_;
+  const PreparedPart& part_;
+  Eigen::Vector3d up_object_;
+  std::vector<std::bitset<32>> listed_;  ///< per grasp, by rejection
+  std::optional<WayOut> way_out_;
+  Refusal refusal_;  ///< of all grasps
+};
+}  // namespace bin_picking
