@@ -71,13 +71,18 @@ TEST_F(GraspsCommand, aBadGraspIsAFailureWithItsCure)
   EXPECT_EQ(runCommand("grasps " + partWith(graspOfWidth("0.034")) + AG95 + " --set max_width_error=2mm").exit_code, 0);
 }
 
+// Of a cube: whose search is short.
 TEST_F(GraspsCommand, proposalsHoldAsTheyAre)
 {
-  const Outcome proposed = runCommand("grasps " + partWith("") + AG95 + " --propose 3");
+  const std::string head = "format: 1\nname: cube\nmesh: {file: cube.obj, unit: mm}\n";
+  fs::copy_file(std::string(BIN_PICKING_SOURCE_DIR) + "/test/ros/cube/cube.obj", folder_.path("cube.obj"));
+  folder_.write("part.yaml", head);
+  const Outcome proposed = runCommand("grasps " + folder_.path("") + AG95 + " --propose 2");
   ASSERT_EQ(proposed.exit_code, 0) << proposed.text;
   ASSERT_NE(proposed.text.find("grasps:"), std::string::npos) << proposed.text;
   const std::string yaml = proposed.text.substr(proposed.text.find("grasps:"));
-  const Outcome told = runCommand("grasps " + partWith(yaml) + AG95);
+  folder_.write("part.yaml", head + yaml);
+  const Outcome told = runCommand("grasps " + folder_.path("") + AG95);
   EXPECT_EQ(told.exit_code, 0) << yaml << told.text;
 }
 
