@@ -53,6 +53,16 @@ def print_detections(detections, instances, groups):
           f" {len(detections)} detections, {len(found)} different parts right")
 
 
+def clearance_text(grasp):
+    """What the gripper passes most closely on its way, against what is required there."""
+    if not grasp.collision_checked:
+        return "its way not checked"
+    if numpy.isinf(grasp.clearance):
+        return "nothing near its way"
+    return (f"{1000 * grasp.clearance:.1f} mm clear ({1000 * grasp.required_clearance:.1f} mm required):"
+            f" {grasp.clearance_to}")
+
+
 def report(response, instances, groups):
     print(f"{response.code.name}: {response.code.message} {response.code.hint}".rstrip())
     detections = [detection for detection in response.detections if detection.accepted]
@@ -70,7 +80,7 @@ def report(response, instances, groups):
     p = best.grasp.position
     print(f"\nbest of {len(response.grasps)} grasps: {best.grasp_id} at [{p.x:.4f}, {p.y:.4f}, {p.z:.4f}] m in"
           f" {best.header.frame_id}, quality {best.quality:.2f}, tilt {numpy.degrees(best.tilt):.1f} deg,"
-          f" {1000 * best.bin_clearance:.0f} mm clear of the bin")
+          f" {clearance_text(best)}")
     print(f"its part is true part {instances[index].id if index is not None else 'none'}, off by"
           f" {1000 * error[0]:.2f} mm and {numpy.degrees(error[1]):.2f} deg: {'right' if is_right(error) else 'WRONG'}"
           f" (limits {1000 * MAX_TRANSLATION:.0f} mm, {numpy.degrees(MAX_ROTATION):.0f} deg)")

@@ -59,8 +59,8 @@ ReturnCode judge(const DetectionResult& detection, const GraspSelection& selecti
     case DetectionCode::Ok:
       break;
   }
-  const bool only_avoided = anyAvoided(selection);
-  return makeReturnCode(only_avoided ? ReturnCode::ALL_AVOIDED : ReturnCode::NO_PICKABLE, detection.message + grasps);
+  const auto code = anyAvoided(selection) ? ReturnCode::ALL_AVOIDED : ReturnCode::NO_PICKABLE;
+  return makeReturnCode(code, detection.message + grasps);
 }
 }  // namespace
 

@@ -85,7 +85,7 @@ TEST(Usage, HelpAndVersionSucceed)
   const Outcome version = runCommand("--version");
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_EQ(version.text, std::string("bin_picking ") + BIN_PICKING_VERSION + "\n");
-  for (const std::string command : {"train", "detect", "match", "evaluate", "simulate", "parameters"})
+  for (const std::string command : {"train", "detect", "match", "evaluate", "grasps", "simulate", "parameters"})
   {
     const Outcome help = runCommand(command + " --help");
     EXPECT_EQ(help.exit_code, 0);

@@ -95,6 +95,32 @@ TEST(GraspExpansion, duplicatesAreLeftOut)
   EXPECT_EQ(expandGrasps(part, 12).size(), 4u);
 }
 
+TEST(GraspExpansion, ofEqualPosesThePreferredIsKept)
+{
+  PartDefinition part = partWith({fromTheSide("spare"), fromTheSide("elsewhere"), fromTheSide("preferred")});
+  part.grasps[1].T_object_tip.translation().z() = 0.02;
+  part.grasps[2].priority = 1;
+  auto variants = expandGrasps(part, 12);
+  ASSERT_EQ(variants.size(), 2u);
+  EXPECT_EQ(variants[0].grasp, 1u) << "what is left keeps its order";
+  EXPECT_EQ(variants[1].grasp, 2u);
+
+  part.grasps[0].priority = 2;
+  variants = expandGrasps(part, 12);
+  ASSERT_EQ(variants.size(), 2u);
+  EXPECT_EQ(variants[0].grasp, 0u);
+  EXPECT_EQ(variants[1].grasp, 1u);
+
+  // As written comes before what a tolerance offers, whatever its priority.
+  part = partWith({fromTheSide("written"), fromTheSide("tilted")});
+  part.grasps[1].T_object_tip = part.grasps[1].T_object_tip * Eigen::AngleAxisd(20 * DEGREE, Vector3d::UnitY());
+  part.grasps[1].tilt_tolerance = 20 * DEGREE;
+  part.grasps[1].priority = 5;
+  variants = expandGrasps(part, 12);
+  ASSERT_EQ(variants.size(), 5u);  // the one at -20 degrees stands there already
+  EXPECT_EQ(variants[0].grasp, 0u);
+}
+
 TEST(GraspExpansion, tiltKeepsPointAndClosingAxis)
 {
   PartDefinition part = partWith({fromTheSide("a")});

@@ -160,7 +160,7 @@ TEST(GraspPlanner, APartInTheMiddleIsTakenStraightDown)
 TEST(GraspPlanner, TheObjectInTheHandIsConsistentWithTheDetection)
 {
   PartDefinition part = partWith({graspFromAbove("top")});
-  part.grasps[0].T_object_tip = Translation3d(0.01, 0.02, 0.005) * part.grasps[0].T_object_tip;
+  part.grasps[0].T_object_tip = Translation3d(0.01, 0.005, 0.005) * part.grasps[0].T_object_tip;
   part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, Vector3d::UnitZ()));
   const Detection detection = detectionAt({0, 0, 0.06}, Eigen::Quaterniond(AngleAxisd(0.3, Vector3d::UnitX())));
   const GraspSelection selection = selectInBin({detection}, part);
@@ -223,11 +223,11 @@ TEST(GraspPlanner, TiltIsMeasuredAgainstStraightDownAndLimited)
 {
   GraspParameters parameters;
   parameters.max_tilt = 30 * DEGREE;
-  const auto tilted = [](double degrees) {
-    return detectionAt({0, 0, 0.1}, Eigen::Quaterniond(AngleAxisd(degrees * DEGREE, Vector3d::UnitX())));
+  const auto tilted = [](double x, double degrees) {
+    return detectionAt({x, 0, 0.1}, Eigen::Quaterniond(AngleAxisd(degrees * DEGREE, Vector3d::UnitX())));
   };
   const GraspSelection selection =
-      selectInBin({tilted(29.9), tilted(30.1)}, partWith({graspFromAbove("top")}), parameters);
+      selectInBin({tilted(-0.08, 29.9), tilted(0.08, 30.1)}, partWith({graspFromAbove("top")}), parameters);
   ASSERT_EQ(selection.grasps.size(), 1u);
   ASSERT_EQ(selection.rejected.size(), 1u);
   EXPECT_EQ(selection.grasps[0].detection_index, 0u);
@@ -463,6 +463,7 @@ TEST(GraspPlanner, BetterGraspsComeFirst)
             1u);                                                                                        // tilt
   EXPECT_EQ(first({detectionAt({0, 0.115, 0.1}), detectionAt({0, 0, 0.1})}, one).detection_index, 1u);  // clearance
   PartDefinition two = partWith({graspFromAbove("spare"), graspFromAbove("preferred")});
+  two.grasps[1].T_object_tip = two.grasps[1].T_object_tip * AngleAxisd(M_PI, Vector3d::UnitZ());  // the fingers swapped
   two.grasps[1].priority = 5;
   EXPECT_EQ(first({detectionAt({0, 0, 0.06})}, two).grasp_id, "preferred");  // priority
 }
@@ -474,6 +475,7 @@ TEST(GraspPlanner, EqualGraspsKeepTheStatedOrder)
   PartDefinition part = partWith({graspFromAbove("a"), graspFromAbove("b")});
   for (GraspDefinition& grasp : part.grasps)
     grasp.T_object_tip = Pose(askew) * grasp.T_object_tip;
+  part.grasps[1].T_object_tip = part.grasps[1].T_object_tip * AngleAxisd(M_PI / 2, Vector3d::UnitZ());
   part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, askew * Vector3d::UnitZ()));
   // Many odd attitudes: the copies' tilts and heights differ by rounding, which must not decide.
   for (int attitude = 0; attitude < 50; ++attitude)

@@ -24,8 +24,9 @@ struct GraspVariant
 ///   T_object_tip = T_object_symmetric * T_written * turn(Z, spin) * turn(Y, tilt).
 ///
 /// First come all as written and their symmetric copies, in the order of the grasps, then those that use a tolerance,
-/// the smaller before the larger. A variant that equals an earlier one, also of another grasp, is left out: poses to
-/// 0.1 mm and 0.1 degrees, width and opening to 0.1 mm. Deterministic.
+/// the smaller before the larger. Of variants that equal each other, also of several grasps, one is kept: that which
+/// uses less of its tolerances, then that of the higher priority, then the first. Equal are poses to 0.1 mm and 0.1
+/// degrees, width and opening to 0.1 mm. Deterministic.
 /// \param continuous_steps copies about an axis of revolution \throws ParameterError continuous_steps < 1
 std::vector<GraspVariant> expandGrasps(const PartDefinition& part, int continuous_steps);
 

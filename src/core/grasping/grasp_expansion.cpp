@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace bin_picking
 {
@@ -60,6 +61,16 @@ bool sameFingers(const GraspDefinition& a, const GraspDefinition& b)
 {
   return std::abs(a.width - b.width) < SAME_POSITION && std::abs(a.opening - b.opening) < SAME_POSITION;
 }
+
+/// Indices of the grasps, the preferred first, so that of two equal poses the preferred one is met first.
+std::vector<std::size_t> byPriority(const std::vector<GraspDefinition>& grasps)
+{
+  std::vector<std::size_t> order(grasps.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return grasps[a].priority > grasps[b].priority; });
+  return order;
+}
 }  // namespace
 
 std::vector<GraspVariant> expandGrasps(const PartDefinition& part, int continuous_steps)
@@ -72,8 +83,11 @@ std::vector<GraspVariant> expandGrasps(const PartDefinition& part, int continuou
              samePose(known.T_object_tip, candidate.T_object_tip);
     });
   };
+  const std::vector<std::size_t> order = byPriority(part.grasps);
   for (const Share& share : tolerancedShares())
-    for (std::size_t g = 0; g < part.grasps.size(); ++g)
+  {
+    const auto before = static_cast<std::ptrdiff_t>(variants.size());
+    for (const std::size_t g : order)
     {
       const GraspDefinition& grasp = part.grasps[g];
       if (!usable(share, grasp))
@@ -88,6 +102,9 @@ std::vector<GraspVariant> expandGrasps(const PartDefinition& part, int continuou
           variants.push_back(variant);
       }
     }
+    std::stable_sort(variants.begin() + before, variants.end(),
+                     [](const GraspVariant& a, const GraspVariant& b) { return a.grasp < b.grasp; });
+  }
   return variants;
 }
 
