@@ -194,8 +194,11 @@ TEST(Files, DocumentationListsEveryParameterOfTheNode)
   // Nor does it list groups' parameters that there are no longer.
   std::istringstream lines(document);
   for (std::string line; std::getline(lines, line);)
-    if (line.rfind("| `grasping/", 0) == 0 || line.rfind("| `avoid/", 0) == 0 || line.rfind("| `reach/", 0) == 0)
-      EXPECT_TRUE(contains(table.str(), line + "\n")) << line;
+  {
+    const bool is_of_a_group =
+        line.rfind("| `grasping/", 0) == 0 || line.rfind("| `avoid/", 0) == 0 || line.rfind("| `reach/", 0) == 0;
+    EXPECT_TRUE(!is_of_a_group || contains(table.str(), line + "\n")) << line;
+  }
   for (const auto& [name, path] : tunableParameters())
     EXPECT_TRUE(contains(document, "| `" + name + "` | `" + path + "` |")) << name;
 }
