@@ -280,11 +280,12 @@ TEST(PartFile, documentationAndDemoPartsAreReadable)
 }
 TEST(PartFile, AGraspIsCopiedAroundAnAxis)
 {
-  TemporaryFolder folder;
-  folder.write("part.yaml", with("    spin_tolerance_deg: 180\n",
-                                 "    around: {axis: [0, 0, 2], origin: [0.01, 0, 0], from_deg: -90, to_deg: 180, "
-                                 "step_deg: 90}\n"));
-  const auto grasps = loadPart(folder.path()).grasps;
+  const TemporaryFolder folder;
+  const std::string file =
+      folder.write("part.yaml", with("    spin_tolerance_deg: 180\n",
+                                     "    around: {axis: [0, 0, 2], origin: [0.01, 0, 0], from_deg: -90, to_deg: 180, "
+                                     "step_deg: 90}\n"));
+  const auto grasps = loadPart(file).grasps;
   ASSERT_EQ(grasps.size(), 5u);
   EXPECT_EQ(grasps[0].id, "top");
   const Vector3d origin(0.01, 0, 0);
@@ -306,9 +307,9 @@ TEST(PartFile, AGraspIsCopiedAroundAnAxis)
 TEST(PartFile, ACircleOfGraspsClosesOnceAndItsAnglesAreChecked)
 {
   const auto grasps = [](const std::string& around) {
-    TemporaryFolder folder;
-    folder.write("part.yaml", with("    spin_tolerance_deg: 180\n", "    around: " + around + "\n"));
-    return loadPart(folder.path()).grasps;
+    const TemporaryFolder folder;
+    return loadPart(folder.write("part.yaml", with("    spin_tolerance_deg: 180\n", "    around: " + around + "\n")))
+        .grasps;
   };
   EXPECT_EQ(grasps("{axis: [0, 0, 1], from_deg: 0, to_deg: 360, step_deg: 120}").size(), 4u) << "0, 120, 240, and side";
   for (const char* const wrong :
