@@ -43,7 +43,6 @@ constexpr std::array<CodeText, 22> CODES = {{
     {ReturnCode::UNIT_SUSPECT, "UNIT_SUSPECT", "Let the driver publish metres (REP 103)."},
     {ReturnCode::PART_UNKNOWN, "PART_UNKNOWN", "Add the part's directory to the parameter ~parts."},
     {ReturnCode::GRIPPER_UNKNOWN, "GRIPPER_UNKNOWN", "Add the gripper's file to the parameter ~grippers."},
-    {ReturnCode::ROBOT_INVALID, "ROBOT_INVALID", "Correct the file that the parameter ~robot names."},
     {ReturnCode::GRASP_UNKNOWN, "GRASP_UNKNOWN",
      "Report the uid of a grasp of a recent answer, once; raise ~remembered_answers if it was forgotten."},
     {ReturnCode::BAD_TRANSFORM, "BAD_TRANSFORM",
