@@ -56,7 +56,7 @@ TEST_F(GraspsCommand, goodGraspsAreToldWithTheirCoverage)
 {
   const Outcome told = runCommand("grasps " + TUBE + " --image " + folder_.path("grasps.png"));
   EXPECT_EQ(told.exit_code, 0) << told.text;
-  expectWords(told.text, {"three_way_tube with", "run_from_below", "holds", "% of all attitudes"});
+  expectWords(told.text, {"three_way_tube with", "middle_from_below", "holds", "% of all attitudes"});
   EXPECT_GT(fs::file_size(folder_.path("grasps.png")), 1000u);
 
   const Outcome own = runCommand("grasps " + partWith(graspOfWidth("0.035")) + AG95);

@@ -336,6 +336,7 @@ TEST(Obstacles, WhatAPartHidesIsNotFree)
   scene.parameters.shadow_entry = 0.004;
   EXPECT_EQ(scene.obstacles().approach(finger, way, 0).kind, ObstacleKind::Unknown);
   scene.parameters.shadow_entry = 0.1;
+  scene.parameters.target_clearance = 0;
   const Clearance own = scene.obstacles().approach(finger, way, 0);
   EXPECT_TRUE(own.free()) << own.distance << " " << own.obstacle;
   // And as far as the other parameter says everywhere.
@@ -474,6 +475,10 @@ TEST(ObstaclesAgainstTruth, NoGraspIsCalledFreeThatIsNot)
   // All that is not detected counts as well; poses are off by 0.3 mm and 0.2 degrees (standard deviations).
   const Gripper gripper = loadGripper(std::string(BIN_PICKING_SOURCE_DIR) + "/config/grippers/ag95.yaml");
   simulation::CellParameters cell;
+  // With little room to spare, so that a wrong verdict is not hidden by it.
+  ObstacleParameters parameters;
+  parameters.surface_clearance = parameters.part_clearance = 0.0005;
+  parameters.target_clearance = 0;
   int called_free = 0;
   int truly_free = 0;
   int both = 0;
@@ -481,8 +486,8 @@ TEST(ObstaclesAgainstTruth, NoGraspIsCalledFreeThatIsNot)
   {
     BinOfGrasps bin({demoKind("three_way_tube")}, {15}, seed, cell, {});
     ASSERT_GE(bin.placed.size(), 3u);
-    const Obstacles one(&bin.measured, &bin.bin, bin.placed, {}, Executor(1));
-    const Obstacles two(&bin.measured, &bin.bin, bin.placed, {}, Executor(2));
+    const Obstacles one(&bin.measured, &bin.bin, bin.placed, parameters, Executor(1));
+    const Obstacles two(&bin.measured, &bin.bin, bin.placed, parameters, Executor(2));
     for (int i = 0; i < 700; ++i)
     {
       const test::TriedGrasp grasp = bin.randomGrasp(gripper);
