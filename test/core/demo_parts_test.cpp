@@ -148,11 +148,14 @@ TEST_P(DemoPart, noSymmetryIsForgotten)
   }
 }
 
-/// The points of the surface that a finger meets when it moves along Y, as their extent along Y. Tip frame.
-std::pair<float, float> extentBetweenFingers(const std::vector<Eigen::Vector3f>& points_tip, const ConvexBody& finger)
+/// The points of the surface that the finger at +Y, which holds, meets between the open fingers, as their extent along
+/// Y. Tip frame.
+std::pair<float, float> extentBetweenFingers(const std::vector<Eigen::Vector3f>& points_tip, const ConvexBody& finger,
+                                             const GraspDefinition& grasp)
 {
   std::pair<float, float> extent(std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity());
-  const ConvexBody path = swept(swept(finger, {0, 0.2, 0}), {0, -0.4, 0});
+  const ConvexBody path =
+      swept(swept(finger, {0, (grasp.opening - grasp.width) / 2, 0}), {0, -(grasp.opening + grasp.width) / 2, 0});
   for (const Eigen::Vector3f& p : points_tip)
   {
     if (signedDistance(path, p.cast<double>()) > 0)
@@ -196,7 +199,7 @@ TEST_P(DemoPart, fingersCloseOnThePartAndMissItOnTheWay)
           << grasp.id << ": " << gripper.bodies[i].name;
     // The width is written in whole millimetres; with a finger off by more than that the part would be pushed aside.
     const auto [low, high] =
-        extentBetweenFingers(points_tip, bodyInTip(gripper, finger_index, grasp.width, grasp.width));
+        extentBetweenFingers(points_tip, bodyInTip(gripper, finger_index, grasp.width, grasp.width), grasp);
     EXPECT_NEAR(low, -grasp.width / 2, 0.001) << grasp.id;
     EXPECT_NEAR(high, grasp.width / 2, 0.001) << grasp.id;
   }

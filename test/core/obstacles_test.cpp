@@ -333,10 +333,10 @@ TEST(Obstacles, WhatAPartHidesIsNotFree)
   EXPECT_EQ(other.obstacle, "unseen space");
   EXPECT_FALSE(other.free());
   // Where the part to be taken hides it, fingers may enter as far as its own parameter says.
+  scene.parameters.target_clearance = 0;
   scene.parameters.shadow_entry = 0.004;
   EXPECT_EQ(scene.obstacles().approach(finger, way, 0).kind, ObstacleKind::Unknown);
   scene.parameters.shadow_entry = 0.1;
-  scene.parameters.target_clearance = 0;
   const Clearance own = scene.obstacles().approach(finger, way, 0);
   EXPECT_TRUE(own.free()) << own.distance << " " << own.obstacle;
   // And as far as the other parameter says everywhere.
