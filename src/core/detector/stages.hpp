@@ -52,7 +52,7 @@ struct Hypothetical
 PreparedScene reduceScene(const PointView& raw, const Bin* bin, const TrainedModel& model,
                           const DetectorParameters& parameters, const Executor& executor, StageClock& clock);
 
-/// Measured raw pixels inside the region, estimated from the working grid.
+/// Measured raw pixels inside the region and clear of the bin's walls, estimated from the working grid.
 double measuredPoints(const PreparedScene& scene);
 
 /// Normals, samples and curvature.
