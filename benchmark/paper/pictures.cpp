@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/common/kd_tree.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/evaluation/detection_picture.hpp"
+#include "bin_picking_perception/evaluation/picture_file.hpp"
 #include "bin_picking_perception/model/depth_renderer.hpp"
 #include "bin_picking_perception/scene/preprocessing.hpp"
 
@@ -22,19 +22,6 @@ constexpr int SIZE = 420;                // pixels of a cloud's picture along it
 constexpr double FAR_AWAY = 20;          // of the clouds' size: nearly parallel rays
 const cv::Vec3b BACKGROUND(46, 36, 30);  // blue, green, red
 const Eigen::Vector3f LIGHT = Eigen::Vector3f(-0.4f, -0.5f, -0.77f);
-
-void write(const cv::Mat& picture, const std::string& file)
-{
-  bool written = false;
-  try
-  {
-    written = cv::imwrite(file, picture);
-  }
-  catch (const cv::Exception&)
-  {}
-  if (!written)
-    throw FileError("The picture " + file + " cannot be written; check that its folder exists and that there is room.");
-}
 
 cv::Vec3b toPixel(const Eigen::Vector3f& rgb, float brightness)
 {
@@ -104,7 +91,7 @@ void saveCloudPicture(const std::vector<ColoredCloud>& clouds, const std::string
       const float brightness = std::isnan(n.x()) ? 0.6f : 0.35f + 0.65f * std::max(0.0f, n.dot(LIGHT));
       picture.at<cv::Vec3b>(v, u) = toPixel(clouds[static_cast<std::size_t>(label)].color, brightness);
     }
-  write(picture, file);
+  writePicture(picture, file);
 }
 
 Eigen::Vector3f heat(double level)
@@ -128,7 +115,7 @@ OrientedPoints pointsOf(const DepthGrid& grid, const std::vector<bool>& keep)
 
 void saveGray(const std::vector<std::uint8_t>& gray, int width, int height, const std::string& file)
 {
-  write(cv::Mat(height, width, CV_8U, const_cast<std::uint8_t*>(gray.data())), file);
+  writePicture(cv::Mat(height, width, CV_8U, const_cast<std::uint8_t*>(gray.data())), file);
 }
 
 void saveLabels(const std::vector<std::int32_t>& labels, int width, int height, const std::string& file)
@@ -145,6 +132,6 @@ void saveLabels(const std::vector<std::int32_t>& labels, int width, int height, 
       picture.at<cv::Vec3b>(static_cast<int>(i) / width, static_cast<int>(i) % width) =
           toPixel({wave(0), wave(1.0 / 3), wave(2.0 / 3)}, 1);
     }
-  write(picture, file);
+  writePicture(picture, file);
 }
 }  // namespace bin_picking::paper

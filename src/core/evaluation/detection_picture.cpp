@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/evaluation/picture_file.hpp"
 #include "part_drawing.hpp"
 
 namespace bin_picking
@@ -181,18 +181,6 @@ void saveDetectionPicture(const DepthGrid& grid, const DetectionResult& result,
     throw ParameterError("The grid has no pixels, so there is no picture to write; pass the grid of a cloud.");
   Painter painter(grid, std::max(1, (MIN_WIDTH + grid.width - 1) / grid.width));
   painter.paint(result.detections, models);
-  bool written = false;
-  std::string reason;
-  try
-  {
-    written = cv::imwrite(path, withLegend(painter.picture(), result.message));
-  }
-  catch (const cv::Exception& e)
-  {
-    reason = " (" + e.err + ")";
-  }
-  if (!written)
-    throw FileError("The picture cannot be written to " + path + reason +
-                    "; the folder must exist and the name end in .png or .jpg.");
+  writePicture(withLegend(painter.picture(), result.message), path);
 }
 }  // namespace bin_picking

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/evaluation/picture_file.hpp"
 #include "bin_picking_perception/model/depth_renderer.hpp"
 #include "bin_picking_perception/scene/preprocessing.hpp"
 #include "part_drawing.hpp"
@@ -110,23 +110,6 @@ cv::Mat drawTile(const TriangleMesh& mesh, const Gripper& gripper, const DrawnGr
   cv::rectangle(tile, {0, 0, TILE, TILE}, cv::Scalar(200, 200, 200));
   return tile;
 }
-
-void write(const cv::Mat& picture, const std::string& path)
-{
-  bool written = false;
-  std::string reason;
-  try
-  {
-    written = cv::imwrite(path, picture);
-  }
-  catch (const cv::Exception& e)
-  {
-    reason = " (" + e.err + ")";
-  }
-  if (!written)
-    throw FileError("cannot write the picture '" + path + "'" + reason +
-                    "; check that the folder exists, that there is room, and that the name ends in .png or .jpg");
-}
 }  // namespace
 
 void saveGraspPicture(const TriangleMesh& mesh, const Gripper& gripper, const std::vector<DrawnGrasp>& grasps,
@@ -141,6 +124,6 @@ void saveGraspPicture(const TriangleMesh& mesh, const Gripper& gripper, const st
   for (int k = 0; k < count; ++k)
     drawTile(mesh, gripper, grasps[static_cast<std::size_t>(k)], field)
         .copyTo(picture(cv::Rect(k % columns * TILE, k / columns * TILE, TILE, TILE)));
-  write(picture, path);
+  writePicture(picture, path);
 }
 }  // namespace bin_picking

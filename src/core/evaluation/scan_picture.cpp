@@ -2,10 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "bin_picking_perception/evaluation/scan_picture.hpp"
 
-#include <opencv2/imgcodecs.hpp>
-
-#include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/evaluation/detection_picture.hpp"
+#include "bin_picking_perception/evaluation/picture_file.hpp"
 #include "part_drawing.hpp"
 
 namespace bin_picking
@@ -25,18 +23,6 @@ void saveScanPicture(const DepthGrid& grid, const std::vector<std::int32_t>& lab
     for (int channel = 0; channel < 3; ++channel)
       picture.at<cv::Vec3b>(pixel)[channel] = cv::saturate_cast<uchar>(gray[channel] * tint[2 - channel]);
   }
-  bool written = false;
-  std::string reason;
-  try
-  {
-    written = cv::imwrite(path, picture);
-  }
-  catch (const cv::Exception& e)
-  {
-    reason = " (" + e.err + ")";
-  }
-  if (!written)
-    throw FileError("cannot write the picture '" + path + "'" + reason +
-                    "; check that the folder exists, that there is room, and that the name ends in .png or .jpg");
+  writePicture(picture, path);
 }
 }  // namespace bin_picking
