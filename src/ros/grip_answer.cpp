@@ -57,19 +57,9 @@ GripResponse toAnswer(const GripOutcome& outcome, const std::optional<int>& mean
 GripResponse failedGrip(const ReturnCode& code)
 {
   GripResponse answer;
+  answer.outcome = outcomeOfFailure<GripResponse>(code);
   answer.id = -1;
   answer.what = code.message;
-  switch (code.value)
-  {
-    case ReturnCode::NOT_READY:
-      answer.outcome = GripResponse::NOT_READY;
-      break;
-    case ReturnCode::INTERNAL:
-      answer.outcome = GripResponse::FAILED;
-      break;
-    default:  // the request's poses, frames or openings
-      answer.outcome = GripResponse::INVALID_REQUEST;
-  }
   return answer;
 }
 }  // namespace bin_picking_ros

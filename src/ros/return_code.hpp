@@ -30,4 +30,20 @@ ReturnCode makeReturnCode(std::int16_t value, const std::string& message);
 /// The one place where exceptions become codes: RequestError, and the typed errors of the core; everything else is
 /// INTERNAL.
 ReturnCode translateException(const std::exception_ptr& exception);
+
+/// The outcome, of a response's own, of a request that was not carried out: not ready, an error of ours, or else a
+/// request whose poses, frames, parts or widths cannot be.
+template <typename Response>
+std::int8_t outcomeOfFailure(const ReturnCode& code)
+{
+  switch (code.value)
+  {
+    case ReturnCode::NOT_READY:
+      return Response::NOT_READY;
+    case ReturnCode::INTERNAL:
+      return Response::FAILED;
+    default:
+      return Response::INVALID_REQUEST;
+  }
+}
 }  // namespace bin_picking_ros

@@ -73,20 +73,10 @@ TakePartResponse nothingThere(const bin_picking_perception::TakePart::Request& r
 TakePartResponse failedAnswer(const ReturnCode& code)
 {
   TakePartResponse answer;
+  answer.outcome = outcomeOfFailure<TakePartResponse>(code);
   answer.id = -1;
   answer.num_left = 0;
   answer.message = code.message;
-  switch (code.value)
-  {
-    case ReturnCode::NOT_READY:
-      answer.outcome = TakePartResponse::NOT_READY;
-      break;
-    case ReturnCode::INTERNAL:
-      answer.outcome = TakePartResponse::FAILED;
-      break;
-    default:  // the request's pose, frame or part
-      answer.outcome = TakePartResponse::INVALID_REQUEST;
-  }
   return answer;
 }
 }  // namespace bin_picking_ros

@@ -23,6 +23,29 @@ namespace
 struct Stopped
 {
 };
+
+/// What the work answers, or what is to be said of the exception that ended it: none goes through a callback.
+template <typename Work, typename Failed>
+auto answered(const Work& work, const Failed& failed)
+{
+  try
+  {
+    return work();
+  }
+  catch (...)
+  {
+    return failed(translateException(std::current_exception()));
+  }
+}
+
+/// The codes below 0 say that a request was not carried out.
+void log(const char* service, int outcome, const std::string& text)
+{
+  if (outcome >= 0)
+    ROS_INFO_STREAM(text);
+  else
+    ROS_WARN_STREAM_THROTTLE(1.0, service << ": " << text);
+}
 }  // namespace
 
 VirtualCellNode::VirtualCellNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh)
@@ -232,18 +255,8 @@ bool VirtualCellNode::handleShake(Trigger::Request&, Trigger::Response& response
 
 bool VirtualCellNode::handleTakePart(TakePart::Request& request, TakePart::Response& response)
 {
-  try
-  {
-    response = takePart(request);
-  }
-  catch (...)
-  {
-    response = failedAnswer(translateException(std::current_exception()));
-  }
-  if (response.outcome >= 0)
-    ROS_INFO_STREAM(response.message);
-  else
-    ROS_WARN_STREAM_THROTTLE(1.0, "take_part: " << response.message);
+  response = answered([&] { return takePart(request); }, failedAnswer);
+  log("take_part", response.outcome, response.message);
   return true;  // false would reach the caller without any data
 }
 
@@ -264,18 +277,8 @@ VirtualCellNode::TakePart::Response VirtualCellNode::takePart(const TakePart::Re
 
 bool VirtualCellNode::handleGrip(Grip::Request& request, Grip::Response& response)
 {
-  try
-  {
-    response = grip(request);
-  }
-  catch (...)
-  {
-    response = failedGrip(translateException(std::current_exception()));
-  }
-  if (response.outcome >= 0)
-    ROS_INFO_STREAM(response.what);
-  else
-    ROS_WARN_STREAM_THROTTLE(1.0, "grip: " << response.what);
+  response = answered([&] { return grip(request); }, failedGrip);
+  log("grip", response.outcome, response.what);
   return true;  // false would reach the caller without any data
 }
 
