@@ -41,7 +41,7 @@ struct Tally
 void add(Tally& tally, const Clearance& clearance, double depth)
 {
   if (!clearance.free() && (clearance.kind == ObstacleKind::BinFloor || clearance.kind == ObstacleKind::BinWall ||
-                            clearance.body == "held part"))
+                            clearance.body == HELD_PART))
   {
     ++tally.not_judged;
     return;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 
 namespace bin_picking::peers
 {
@@ -40,14 +41,7 @@ std::string TextTable::text() const
   return out.str();
 }
 
-std::string number(double value, int digits)
-{
-  if (!std::isfinite(value))
-    return "-";
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(digits) << value;
-  return out.str();
-}
+std::string number(double value, int digits) { return std::isfinite(value) ? roundedText(value, digits) : "-"; }
 
 std::string shortNumber(double value)
 {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "bin_picking_perception/common/figures.hpp"
 #include "bin_picking_perception/evaluation/statistics.hpp"
 #include "report.hpp"
 #include "terminal.hpp"
@@ -34,7 +35,7 @@ std::vector<double> secondsOf(const PartStudy& part, std::vector<double> Emptyin
 std::string timeText(const PartStudy& part, std::vector<double> Emptying::*seconds)
 {
   const Spread times = spread(secondsOf(part, seconds));
-  return times.count == 0 ? "-" : fixed(1000 * times.median, 1) + " / " + fixed(1000 * times.p95, 1);
+  return times.count == 0 ? "-" : roundedText(1000 * times.median, 1) + " / " + roundedText(1000 * times.p95, 1);
 }
 
 Ratio successes(const std::vector<Attempt>& attempts)
@@ -45,7 +46,7 @@ Ratio successes(const std::vector<Attempt>& attempts)
   return ratio;
 }
 
-std::string percent(double share) { return fixed(100 * share, 1); }
+std::string percent(double share) { return roundedText(100 * share, 1); }
 
 std::string ratioText(const Ratio& ratio)
 {
@@ -120,9 +121,9 @@ void writeDetails(std::ostream& out, const PartStudy& part)
   for (const Attempt& a : attemptsOf(part))
     if (a.verdict.outcome != GripVerdict::Outcome::Taken)
       out << "- seed " << a.seed << ", cloud " << a.cloud << ", " << a.part << "/" << a.grasp << ", tilt "
-          << fixed(a.tilt * 180 / M_PI, 0) << " deg, pose off by " << fixed(1000 * a.center_error, 1) << " mm and "
-          << fixed(a.rotation_error * 180 / M_PI, 1) << " deg" << (a.called_free ? ", **called free**" : "") << ": "
-          << a.verdict.what << "\n";
+          << roundedText(a.tilt * 180 / M_PI, 0) << " deg, pose off by " << roundedText(1000 * a.center_error, 1)
+          << " mm and " << roundedText(a.rotation_error * 180 / M_PI, 1) << " deg"
+          << (a.called_free ? ", **called free**" : "") << ": " << a.verdict.what << "\n";
 }
 }  // namespace
 
@@ -133,7 +134,7 @@ std::string causeOf(const Attempt& attempt)
     return "taken";
   if (verdict.outcome == GripVerdict::Outcome::Missed)
     return "missed";
-  const std::string who = verdict.body == "held part" ? "held part" : "gripper";
+  const std::string who = verdict.body == HELD_PART ? HELD_PART : "gripper";
   return std::string(toString(verdict.stage)) + ": " + who + " against " + toString(verdict.obstacle);
 }
 

@@ -7,14 +7,13 @@
 #include <string>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 
 namespace bin_picking::simulation
 {
 namespace
 {
 constexpr int MAX_ATTITUDES = 200;  // a part that fits in so few of them that none is drawn is too large
-
-std::string millimetres(double metres) { return std::to_string(std::lround(1000 * metres)) + " mm"; }
 
 double topBelow(const Eigen::AlignedBox2d& footprint, const DropSpace& space)
 {
@@ -52,8 +51,8 @@ Pose randomDrop(const BulletShape& shape, const DropSpace& space, Random& random
     return T_bin_body;
   }
   throw ParameterError("'" + shape.name + "' is too large for the bin: its farthest point is " +
-                       millimetres(shape.radius) + " from its centre of mass, and the bin is " +
-                       millimetres(space.inner_size.x()) + " x " + millimetres(space.inner_size.y()) +
+                       millimetres(shape.radius, 0) + " from its centre of mass, and the bin is " +
+                       millimetres(space.inner_size.x(), 0) + " x " + millimetres(space.inner_size.y(), 0) +
                        " inside; take a larger bin, or check the unit of the mesh");
 }
 }  // namespace bin_picking::simulation

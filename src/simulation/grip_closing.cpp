@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "bin_picking_perception/common/figures.hpp"
 #include "grip_contact.hpp"
 
 namespace bin_picking::simulation

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "bin_picking_perception/common/figures.hpp"
+
 namespace bin_picking::simulation
 {
 namespace
@@ -36,12 +38,8 @@ Polygon clipped(const Polygon& polygon, const Eigen::Vector4d& plane)
   return result;
 }
 
-std::string degrees(double cosine)
-{
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.0f deg", std::acos(std::min(1.0, cosine)) * 180 / M_PI);
-  return text;
-}
+/// Of the cosine.
+std::string angleText(double cosine) { return degrees(std::acos(std::min(1.0, cosine)), 0); }
 }  // namespace
 
 void addContact(ContactPatch& patch, const PlacedMesh& target, const ConvexBody& pad_bin,
@@ -77,13 +75,13 @@ std::string judgeContacts(const ContactPatch& right, const ContactPatch& left, c
     {
       const int share = patch->area > 0 ? static_cast<int>(100 * patch->inside_cone / patch->area) : 0;
       return "The fingers slip off " + target.name + ": of what a pad touches, " + std::to_string(share) +
-             " % lie within the friction cone of " + degrees(cone) + ", half is needed (friction).";
+             " % lie within the friction cone of " + angleText(cone) + ", half is needed (friction).";
     }
   const double along = (right.middle() - left.middle()).normalized().dot(closing_bin);
   if (along >= cone)
     return "";
-  return "The fingers turn " + target.name + " away: the line between their contacts leans by " + degrees(along) +
-         " against the closing direction, " + degrees(cone) + " are allowed (friction).";
+  return "The fingers turn " + target.name + " away: the line between their contacts leans by " + angleText(along) +
+         " against the closing direction, " + angleText(cone) + " are allowed (friction).";
 }
 
 ConvexBody moved(ConvexBody body, const Eigen::Vector3d& motion)

@@ -70,11 +70,4 @@ double depthOnWay(const PlacedMesh& placed, const ConvexBody& body_bin, const Ei
   }
   return high;
 }
-
-std::string millimetres(double value)
-{
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.1f mm", 1e3 * value);
-  return text;
-}
 }  // namespace bin_picking::simulation

@@ -64,7 +64,4 @@ std::optional<Touch> firstTouch(const GripScene& scene, const Gripper& gripper, 
 /// How deep a body and a mesh reach into each other on the way at most, to 0.1 mm; no more than MAX_DEPTH.
 double depthOnWay(const PlacedMesh& mesh, const ConvexBody& body_bin, const Eigen::Vector3d& motion_bin);
 constexpr double MAX_DEPTH = 0.02;  // metres
-
-/// "1.2 mm"
-std::string millimetres(double value);
 }  // namespace bin_picking::simulation

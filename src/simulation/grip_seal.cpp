@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "bin_picking_perception/common/figures.hpp"
 #include "grip_closing.hpp"
 
 namespace bin_picking::simulation

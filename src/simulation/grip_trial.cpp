@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 #include "grip_closing.hpp"
 #include "held_part.hpp"
 
@@ -198,7 +199,7 @@ private:
 
   void drag(const HeldTouch& touch, const std::string& where)
   {
-    setCollision(GripStage::Retreat, touch.mesh, "held part", touch.depth);
+    setCollision(GripStage::Retreat, touch.mesh, HELD_PART, touch.depth);
     const std::string held = "The held " + targetName();
     verdict_.what = scene_.meshes[touch.mesh].isPart()
                         ? held + " drags " + verdict_.obstacle_name + " along " + where + ": it reaches " +

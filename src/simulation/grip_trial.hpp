@@ -73,7 +73,7 @@ struct GripVerdict
   // Of a collision.
   GripStage stage = GripStage::Approach;
   GripObstacle obstacle = GripObstacle::None;
-  std::string body;           ///< of the gripper, or "held part"
+  std::string body;           ///< of the gripper, or HELD_PART
   std::string obstacle_name;  ///< "wall at +x", "part 3 (three_way_tube)"
   double depth = 0;           ///< how deep they would reach into each other on the whole way, metres; at most 0.02
 };

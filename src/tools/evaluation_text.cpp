@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iomanip>
 
+#include "bin_picking_perception/common/figures.hpp"
 #include "evaluation_report.hpp"
 #include "terminal.hpp"
 
@@ -14,11 +15,11 @@ namespace
 constexpr double DEGREES = 180 / M_PI;
 constexpr int CELL = 9;
 
-std::string number(double value, int digits) { return std::isnan(value) ? "-" : fixed(value, digits); }
+std::string number(double value, int digits) { return std::isnan(value) ? "-" : roundedText(value, digits); }
 
-std::string percent(double share) { return std::isnan(share) ? "-" : fixed(100 * share, 1) + "%"; }
+std::string percent(double share) { return std::isnan(share) ? "-" : roundedText(100 * share, 1) + "%"; }
 
-std::string levelName(double level) { return fixed(100 * level, 0) + "%"; }
+std::string levelName(double level) { return roundedText(100 * level, 0) + "%"; }
 
 class Table
 {
@@ -69,8 +70,8 @@ void printRatio(std::ostream& out, const std::string& name, const Ratio& ratio)
     return;
   const Interval interval = ratio.interval();
   out << "  " << std::left << std::setw(34) << name << std::right << std::setw(7) << percent(ratio.value()) << "  "
-      << ratio.hits << " of " << ratio.total << ", 95 % interval " << fixed(100 * interval.low, 0) << " to "
-      << fixed(100 * interval.high, 0) << " %\n";
+      << ratio.hits << " of " << ratio.total << ", 95 % interval " << roundedText(100 * interval.low, 0) << " to "
+      << roundedText(100 * interval.high, 0) << " %\n";
 }
 
 /// Parts whose poses leave a turn open: how many do, and what is found without them.
@@ -88,7 +89,7 @@ void printOpenTurns(std::ostream& out, const EvaluationFigures& f)
 void printCalibration(std::ostream& out, const Calibration& tested, const Calibration& returned)
 {
   out << "\nscore against truth of " << tested.count << " poses that were tested in full: Brier score "
-      << fixed(tested.brier_score, 3) << ", expected calibration error " << percent(tested.expected_error)
+      << roundedText(tested.brier_score, 3) << ", expected calibration error " << percent(tested.expected_error)
       << "\n  score          tested   mean   right  95 % interval   returned   right\n";
   for (std::size_t k = 0; k < tested.tenths.size(); ++k)
   {
@@ -97,11 +98,11 @@ void printCalibration(std::ostream& out, const Calibration& tested, const Calibr
       continue;
     const double low = static_cast<double>(k) / 10;
     const Interval interval = tenth.right.interval();
-    out << "  " << fixed(low, 1) << " to " << fixed(low + 0.1, 1) << std::setw(11) << tenth.right.total << std::setw(7)
-        << fixed(tenth.mean_score, 2) << std::setw(8) << percent(tenth.right.value()) << std::setw(6)
-        << fixed(100 * interval.low, 0) << " to " << std::setw(3) << fixed(100 * interval.high, 0) << " %"
-        << std::setw(11) << returned.tenths[k].right.total << std::setw(8) << percent(returned.tenths[k].right.value())
-        << "\n";
+    out << "  " << roundedText(low, 1) << " to " << roundedText(low + 0.1, 1) << std::setw(11) << tenth.right.total
+        << std::setw(7) << roundedText(tenth.mean_score, 2) << std::setw(8) << percent(tenth.right.value())
+        << std::setw(6) << roundedText(100 * interval.low, 0) << " to " << std::setw(3)
+        << roundedText(100 * interval.high, 0) << " %" << std::setw(11) << returned.tenths[k].right.total
+        << std::setw(8) << percent(returned.tenths[k].right.value()) << "\n";
   }
 }
 
@@ -109,8 +110,9 @@ void printSpread(std::ostream& out, const std::string& name, const Spread& sprea
                  const std::string& unit)
 {
   if (spread.count > 0)
-    out << "  " << std::left << std::setw(34) << name << std::right << std::setw(7) << fixed(spread.median * scale, 2)
-        << " " << unit << ", 95 % below " << fixed(spread.p95 * scale, 2) << " " << unit << "\n";
+    out << "  " << std::left << std::setw(34) << name << std::right << std::setw(7)
+        << roundedText(spread.median * scale, 2) << " " << unit << ", 95 % below " << roundedText(spread.p95 * scale, 2)
+        << " " << unit << "\n";
 }
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 #include "bin_picking_perception/evaluation/grasp_picture.hpp"
 #include "bin_picking_perception/grasping/grasp_check.hpp"
 #include "bin_picking_perception/grasping/grasp_proposal.hpp"
@@ -59,7 +60,7 @@ Task taskFrom(const Arguments& arguments)
   return task;
 }
 
-std::string millimetres(double value) { return std::isnan(value) ? "-" : fixed(1e3 * value, 1); }
+std::string millimetres(double value) { return std::isnan(value) ? "-" : roundedText(1e3 * value, 1); }
 
 void printTable(const std::vector<DrawnGrasp>& grasps)
 {
@@ -82,7 +83,7 @@ void printTable(const std::vector<DrawnGrasp>& grasps)
       verdict += (verdict.empty() ? "" : ", ") + std::string(toString(finding.fault));
     row(drawn.grasp.id,
         {millimetres(drawn.grasp.width), millimetres(check.width), millimetres(check.offset),
-         fixed(1e6 * check.right.area, 0), fixed(1e6 * check.left.area, 0), millimetres(check.clearance)},
+         roundedText(1e6 * check.right.area, 0), roundedText(1e6 * check.left.area, 0), millimetres(check.clearance)},
         verdict.empty() ? "holds" : verdict);
   }
 }
@@ -103,7 +104,7 @@ void printCoverage(PartDefinition part, const std::vector<DrawnGrasp>& grasps)
   const auto variants = expandGrasps(part, CONTINUOUS_STEPS);
   std::cout << "\n"
             << part.grasps.size() << " good grasps, " << variants.size() << " with symmetry and tolerances; they take "
-            << fixed(100 * attitudeCoverage(variants, UPRIGHT_TILT), 0)
+            << roundedText(100 * attitudeCoverage(variants, UPRIGHT_TILT), 0)
             << " % of all attitudes of the part with an approach of at most 45 deg from straight down.\n";
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iomanip>
 
+#include "bin_picking_perception/common/figures.hpp"
 #include "terminal.hpp"
 
 namespace bin_picking::tools
@@ -50,10 +51,10 @@ void printDetections(std::ostream& out, const std::vector<Detection>& detections
   {
     const Detection& d = detections[k];
     out << std::setw(3) << k + 1 << "  " << std::left << std::setw(static_cast<int>(name_width)) << d.part << std::right
-        << std::setw(7) << fixed(d.score, 3) << std::setw(10) << fixed(d.matching_rate, 3) << std::setw(9)
-        << fixed(d.visible_fraction, 3) << std::setw(8) << fixed(d.rms * 1000, 2);
+        << std::setw(7) << roundedText(d.score, 3) << std::setw(10) << roundedText(d.matching_rate, 3) << std::setw(9)
+        << roundedText(d.visible_fraction, 3) << std::setw(8) << roundedText(d.rms * 1000, 2);
     for (int axis = 0; axis < 3; ++axis)
-      out << std::setw(axis == 0 ? 8 : 9) << fixed(d.T_camera_object.translation()[axis] * 1000, 1);
+      out << std::setw(axis == 0 ? 8 : 9) << roundedText(d.T_camera_object.translation()[axis] * 1000, 1);
     out << "\n";
   }
   for (std::size_t k = 0; k < detections.size(); ++k)
@@ -117,8 +118,8 @@ void print(std::ostream& out, const DetectionResult& result)
   out << "\nstage                       ms\n";
   for (const StageTime& stage : result.timing)
     out << "  " << std::left << std::setw(18) << stage.stage << std::right << std::setw(10)
-        << fixed(stage.seconds * 1000, 1) << "\n";
+        << roundedText(stage.seconds * 1000, 1) << "\n";
   out << "  " << std::left << std::setw(18) << "total" << std::right << std::setw(10)
-      << fixed(result.total_seconds * 1000, 1) << "\n";
+      << roundedText(result.total_seconds * 1000, 1) << "\n";
 }
 }  // namespace bin_picking::tools

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 #include "bin_picking_perception/model/part.hpp"
 #include "commands.hpp"
 #include "detector_options.hpp"
@@ -154,9 +155,9 @@ void report(const CellScan& scan, const VirtualCell& cell, const std::string& na
   const DepthGrid& grid = scan.scan.grid;
   const auto valid = std::count_if(grid.z.begin(), grid.z.end(), [](float z) { return std::isfinite(z); });
   std::cout << name << ": " << scan.instances.size() << " parts, " << visible
-            << " at least half visible, deepest overlap " << fixed(1000 * cell.deepestOverlap().depth, 2) << " mm, "
-            << fixed(100.0 * static_cast<double>(valid) / static_cast<double>(grid.size()), 1)
-            << " % of the pixels measured, " << fixed(seconds, 1) << " s\n";
+            << " at least half visible, deepest overlap " << roundedText(1000 * cell.deepestOverlap().depth, 2)
+            << " mm, " << roundedText(100.0 * static_cast<double>(valid) / static_cast<double>(grid.size()), 1)
+            << " % of the pixels measured, " << roundedText(seconds, 1) << " s\n";
 }
 
 void simulate(const Arguments& arguments)
@@ -179,7 +180,7 @@ void simulate(const Arguments& arguments)
     cell.clear();
     if (std::accumulate(counts.begin(), counts.end(), 0) > 0)
       cell.fill(counts, scene_seed,
-                [&](double share) { progress.show(name + ": dropping parts, " + fixed(100 * share, 0) + " %"); });
+                [&](double share) { progress.show(name + ": dropping parts, " + roundedText(100 * share, 0) + " %"); });
     progress.show(name + ": measuring");
     const CellScan scan = cell.scan(scene_seed);
     const fs::path folder = scenes == 1 ? output.path() : output.path() / name;

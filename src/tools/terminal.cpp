@@ -6,11 +6,11 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iomanip>
 #include <iostream>
 #include <sstream>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 
 namespace bin_picking::tools
 {
@@ -32,14 +32,7 @@ void Progress::finish()
 void Progress::show(const std::string& stage)
 {
   if (on_terminal_)
-    std::cerr << WIPE_LINE << "[" << fixed(watch_.seconds(), 1) << " s] " << stage << " ..." << std::flush;
-}
-
-std::string fixed(double value, int digits)
-{
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(digits) << value;
-  return out.str();
+    std::cerr << WIPE_LINE << "[" << roundedText(watch_.seconds(), 1) << " s] " << stage << " ..." << std::flush;
 }
 
 std::string readText(const std::string& path)

@@ -36,9 +36,6 @@ private:
   Stopwatch watch_;
 };
 
-/// Text with so many digits after the point.
-std::string fixed(double value, int digits);
-
 /// The whole text of a file. \throws FileError
 std::string readText(const std::string& path);
 

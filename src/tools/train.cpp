@@ -4,6 +4,7 @@
 #include <iomanip>
 #include <iostream>
 
+#include "bin_picking_perception/common/figures.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
 #include "commands.hpp"
@@ -63,7 +64,8 @@ void printLine(const std::string& title, const std::string& text)
 
 std::string millimetres(const Eigen::Vector3d& size)
 {
-  return fixed(size.x() * 1000, 1) + " x " + fixed(size.y() * 1000, 1) + " x " + fixed(size.z() * 1000, 1) + " mm";
+  return roundedText(size.x() * 1000, 1) + " x " + roundedText(size.y() * 1000, 1) + " x " +
+         roundedText(size.z() * 1000, 1) + " mm";
 }
 
 std::string symmetryText(const Symmetry& symmetry)
@@ -78,12 +80,12 @@ std::string symmetryText(const Symmetry& symmetry)
 
 void printMesh(const TrainedModel& model)
 {
-  printLine("size", millimetres(model.size) + ", diameter " + fixed(model.diameter * 1000, 1) + " mm");
+  printLine("size", millimetres(model.size) + ", diameter " + roundedText(model.diameter * 1000, 1) + " mm");
   if (model.mesh.empty())
     return;
   const MeshReport report = inspectMesh(model.mesh);
   printLine("mesh", std::to_string(model.mesh.triangles.size()) + " triangles, " + std::to_string(report.open_edges) +
-                        " open edges, volume " + fixed(report.volume * 1e6, 2) + " cm^3");
+                        " open edges, volume " + roundedText(report.volume * 1e6, 2) + " cm^3");
   for (const std::string& warning : report.warnings)
     std::cerr << "warning: " << warning << "\n";
 }
@@ -91,7 +93,7 @@ void printMesh(const TrainedModel& model)
 std::string parameterText(const ParameterEntry& entry)
 {
   if (entry.unit == "m")
-    return fixed(1000 * parseQuantity(entry.value, "m"), 3) + " mm";
+    return roundedText(1000 * parseQuantity(entry.value, "m"), 3) + " mm";
   return entry.value + (entry.unit.empty() ? "" : " " + entry.unit);
 }
 
@@ -105,12 +107,12 @@ void printSummary(TrainedModel model, double seconds, const std::string& path)
   printLine("points", std::to_string(model.points.size()) + " at the leaf, " + std::to_string(model.surface.size()) +
                           " on the surface, " + std::to_string(model.views.size()) + " views");
   printLine("pairs", std::to_string(model.table.numEntries()) + " under " + std::to_string(model.table.numKeys()) +
-                         " features, " + fixed(static_cast<double>(model.table.bytes()) / 1048576, 1) + " MiB");
-  printLine("low curvature", "up to " + fixed(model.classes.low_max, 1));
-  printLine("high curvature", "above " + fixed(model.classes.high_min, 1));
+                         " features, " + roundedText(static_cast<double>(model.table.bytes()) / 1048576, 1) + " MiB");
+  printLine("low curvature", "up to " + roundedText(model.classes.low_max, 1));
+  printLine("high curvature", "above " + roundedText(model.classes.high_min, 1));
   for (const ParameterEntry& entry : listParameters(visitor(model.parameters)))
     printLine(entry.path, parameterText(entry));
-  printLine("time", fixed(seconds, 1) + " s");
+  printLine("time", roundedText(seconds, 1) + " s");
   printLine("written to", path);
 }
 

@@ -22,7 +22,8 @@ namespace bin_picking
 struct ObstacleParameters
 {
   double bin_clearance = 0.003;
-  // Chosen by benchmark/grasp_collision.cpp: no grasp of its bins is called free that gets 0.5 mm into a part.
+  // Chosen by emptying bins (benchmark/picking): with these no grasp that is called free touches anything, and larger
+  // ones leave parts behind.
   double surface_clearance = 0.001;
   double part_clearance = 0.001;
   double target_clearance = 0.0015;
@@ -48,6 +49,9 @@ enum class ObstacleKind
 /// "none", "bin_floor", ... for logs and messages.
 const char* toString(ObstacleKind kind);
 
+/// What Clearance::body names where it is no body of the gripper.
+constexpr char HELD_PART[] = "held part";
+
 /// The obstacle that decides: the one whose distance falls short of what is required the most, or exceeds it the least.
 struct Clearance
 {
@@ -57,7 +61,7 @@ struct Clearance
   double distance = std::numeric_limits<double>::infinity();
   double required = 0;  ///< of that kind of obstacle, metres
   ObstacleKind kind = ObstacleKind::None;
-  std::string body;      ///< of the gripper, or "held part"
+  std::string body;      ///< of the gripper, or HELD_PART
   std::string obstacle;  ///< "wall at +x", "part 3 (three_way_tube)", "measured surface", "unseen space", ...
   int part = -1;         ///< index of the detection where kind is Part or Target
   /// Where it is nearest, or deepest; NaN where that is not one point.

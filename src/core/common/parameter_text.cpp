@@ -97,15 +97,6 @@ std::string formatNumber(double value)
   return {};
 }
 
-std::string roundedText(double value, int digits)
-{
-  std::ostringstream out;
-  out.imbue(std::locale::classic());
-  out.precision(digits);
-  out << std::fixed << value;
-  return out.str();
-}
-
 std::string rangeText(const ParameterInfo& info, const char* minus_infinity, const char* plus_infinity)
 {
   if (std::isinf(info.min) && std::isinf(info.max))

@@ -11,9 +11,6 @@ namespace bin_picking
 /// Shortest text that reads back as the same number.
 std::string formatNumber(double value);
 
-/// Rounded to so many digits behind the point.
-std::string roundedText(double value, int digits);
-
 /// "[0, 1]"; infinite ends are written as given.
 std::string rangeText(const ParameterInfo& info, const char* minus_infinity, const char* plus_infinity);
 }  // namespace bin_picking

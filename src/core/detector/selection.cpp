@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "../common/parameter_text.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 #include "stages.hpp"
 
 namespace bin_picking

@@ -2,9 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <cmath>
 #include <cstdint>
-#include <iomanip>
-#include <sstream>
 
+#include "bin_picking_perception/common/figures.hpp"
 #include "html_parts.hpp"
 
 namespace bin_picking
@@ -52,15 +51,7 @@ std::string base64(const std::string& bytes)
   return text;
 }
 
-std::string decimal(double value, int digits)
-{
-  if (std::isnan(value))
-    return "–";
-  std::ostringstream out;
-  out.imbue(std::locale::classic());
-  out << std::fixed << std::setprecision(digits) << value;
-  return out.str();
-}
+std::string decimal(double value, int digits) { return std::isnan(value) ? "–" : roundedText(value, digits); }
 
 std::string percent(double share) { return std::isnan(share) ? "–" : decimal(share * 100, 1) + " %"; }
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "bin_picking_perception/common/figures.hpp"
 #include "bin_picking_perception/robot/reach.hpp"
-#include "figures.hpp"
 
 namespace bin_picking
 {
@@ -20,7 +20,7 @@ bool reject(Grasp& grasp, GraspRejection rejection, const std::string& reason)
 
 GraspRejection rejectionFor(const Clearance& closest)
 {
-  if (closest.body == "held part")
+  if (closest.body == HELD_PART)
     return GraspRejection::HeldPartCollision;
   switch (closest.kind)
   {
@@ -39,6 +39,39 @@ GraspRejection rejectionFor(const Clearance& closest)
   }
 }
 
+const char* parameterOf(ObstacleKind kind)
+{
+  switch (kind)
+  {
+    case ObstacleKind::BinFloor:
+    case ObstacleKind::BinWall:
+      return "bin_clearance";
+    case ObstacleKind::Part:
+      return "part_clearance";
+    case ObstacleKind::Target:
+      return "target_clearance";
+    default:
+      return "surface_clearance";
+  }
+}
+
+/// "the palm would ..."; what is not free is compared with what its parameter allows.
+std::string passage(const Clearance& closest)
+{
+  const std::string body = "the " + closest.body + " would ";
+  if (closest.body == HELD_PART)
+    return body + "get " + millimetres(-closest.distance) + " deeper into the " + closest.obstacle +
+           " than it is at rest; at most " + millimetres(-closest.required) + " are allowed (max_drag).";
+  if (closest.kind == ObstacleKind::Unknown)
+    return body + "reach " + millimetres(-closest.distance) + " farther into the " + closest.obstacle +
+           " than is allowed (unseen_entry; shadow_entry behind the part itself).";
+  const std::string passes = closest.distance < 0 ? "reach " + millimetres(-closest.distance) + " into the "
+                                                  : "pass at " + millimetres(closest.distance) + " from the ";
+  const std::string limit = closest.required < 0 ? "at most " + millimetres(-closest.required) + " into it are allowed"
+                                                 : "at least " + millimetres(closest.required) + " are required";
+  return body + passes + closest.obstacle + "; " + limit + " (" + parameterOf(closest.kind) + ").";
+}
+
 /// Keeps the passage that leaves the least room beyond what is required.
 bool passes(Grasp& grasp, const Clearance& closest, const char* phase)
 {
@@ -46,11 +79,7 @@ bool passes(Grasp& grasp, const Clearance& closest, const char* phase)
     grasp.clearance = closest;
   if (closest.free())
     return true;
-  const std::string passage = closest.distance < 0 ? " would reach " + millimetres(-closest.distance) + " into the "
-                                                   : " would pass at " + millimetres(closest.distance) + " from the ";
-  return reject(grasp, rejectionFor(closest),
-                std::string(phase) + " the " + closest.body + passage + closest.obstacle + "; at least " +
-                    millimetres(closest.required) + " are required.");
+  return reject(grasp, rejectionFor(closest), std::string(phase) + " " + passage(closest));
 }
 
 GraspRejection rejectionFor(Reach::Failure failure)

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <limits>
-#include <locale>
 #include <optional>
-#include <sstream>
+
+#include "bin_picking_perception/common/figures.hpp"
 
 namespace bin_picking
 {
@@ -17,20 +16,9 @@ namespace
 constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
 using Fault = GraspCheck::Fault;
 
-std::string fixed(double value, int digits)
-{
-  std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream << std::fixed << std::setprecision(digits) << value;
-  return stream.str();
-}
-
-std::string millimetres(double value) { return fixed(1e3 * value, 1) + " mm"; }
-std::string degrees(double angle) { return fixed(angle * 180 / M_PI, 1) + " deg"; }
-
 std::string list(const Eigen::Vector3d& v)
 {
-  const auto text = [](double value) { return fixed(std::abs(value) < 5e-5 ? 0.0 : value, 4); };  // never -0
+  const auto text = [](double value) { return roundedText(std::abs(value) < 5e-5 ? 0.0 : value, 4); };  // never -0
   return "[" + text(v.x()) + ", " + text(v.y()) + ", " + text(v.z()) + "]";
 }
 
@@ -54,10 +42,10 @@ void judgeContact(const PadContact& contact, const char* pad, const GraspCheckPa
   if (contact.area >= parameters.min_contact_area)
     return;
   result.findings.push_back(
-      {Fault::Contact, "the pad at " + std::string(pad) + " closing holds " + fixed(1e6 * contact.area, 0) +
+      {Fault::Contact, "the pad at " + std::string(pad) + " closing holds " + roundedText(1e6 * contact.area, 0) +
                            " mm^2 of surface that is inclined by no more than the " +
                            degrees(std::atan(parameters.friction)) + " of friction (mean " + degrees(contact.angle) +
-                           "), at least " + fixed(1e6 * parameters.min_contact_area, 0) +
+                           "), at least " + roundedText(1e6 * parameters.min_contact_area, 0) +
                            " are required; move the grasp to where the surface lies flat on the pad"});
 }
 
@@ -68,7 +56,7 @@ void judgeWidth(const GraspDefinition& grasp, const Pose& T_object_tip, const Gr
   if (std::abs(result.width - grasp.width) > parameters.max_width_error)
     result.findings.push_back({Fault::Width, "the part is " + millimetres(result.width) +
                                                  " wide between the pads, not " + millimetres(grasp.width) +
-                                                 "; write width: " + fixed(result.width, 4)});
+                                                 "; write width: " + roundedText(result.width, 4)});
   if (std::abs(result.offset) > parameters.max_offset)
   {
     const Eigen::Vector3d middle = T_object_tip.translation() + result.offset * T_object_tip.linear().col(1);
@@ -167,7 +155,7 @@ GraspCheck::Finding GraspChecker::wayInFinding(const GraspDefinition& grasp, con
   std::string cure;
   for (GraspDefinition wider = grasp; cure.empty() && (wider.opening += STEP) <= gripper_.max_opening;)
     if (fits(wider, T_object_tip))
-      cure = "write opening: " + fixed(wider.opening, 3);
+      cure = "write opening: " + roundedText(wider.opening, 3);
   for (double back = STEP; cure.empty() && back <= FARTHEST; back += STEP)
   {
     const Pose moved = T_object_tip * Eigen::Translation3d(0, 0, -back);

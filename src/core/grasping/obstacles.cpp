@@ -282,7 +282,7 @@ Clearance Obstacles::closing(const Gripper& gripper, const Pose& T_camera_tool0,
 Clearance Obstacles::pulledOut(const Eigen::Vector3d& motion_camera, std::size_t target) const
 {
   impl_->checkTarget(target);
-  return impl_->inWords(impl_->meetHeld(motion_camera, target), "held part");
+  return impl_->inWords(impl_->meetHeld(motion_camera, target), HELD_PART);
 }
 
 Clearance Obstacles::retreat(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const

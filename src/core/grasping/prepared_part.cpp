@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "figures.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 
 namespace bin_picking
 {

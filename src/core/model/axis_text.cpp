@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "../common/parameter_text.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 
 namespace bin_picking
 {
@@ -22,8 +22,6 @@ std::string vectorText(const Eigen::Vector3d& v, double scale, int digits)
   return text + ")";
 }
 }  // namespace
-
-std::string millimetreText(double metres) { return roundedText(1000 * metres, 2) + " mm"; }
 
 std::string axisText(const Symmetry::Axis& axis)
 {

@@ -8,9 +8,6 @@
 
 namespace bin_picking
 {
-/// "5.00 mm", from metres.
-std::string millimetreText(double metres);
-
 /// "z through (0.00, 0.00, 0.00) mm", or "(0.6000, 0.0000, 0.8000) through ..." for an axis that is none of the
 /// drawing's.
 std::string axisText(const Symmetry::Axis& axis);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../common/parameter_text.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 #include "bin_picking_perception/common/kd_tree.hpp"
 #include "bin_picking_perception/model/slight_turn.hpp"
 #include "bin_picking_perception/model/symmetry_search.hpp"

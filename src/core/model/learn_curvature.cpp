@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../common/parameter_text.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 #include "bin_picking_perception/scene/surface_resampling.hpp"
 #include "view_curvature.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "../common/parameter_text.hpp"
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 #include "part_size.hpp"
 #include "symmetry_group.hpp"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "axis_text.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 
 namespace bin_picking
 {
@@ -69,7 +70,7 @@ const NearSymmetry* slightTurn(const TrainedModel& model, const Pose& T_object_o
 
 std::vector<std::string> describeSlightTurns(const TrainedModel& model)
 {
-  const std::string limit = millimetreText(model.parameters.slight_deviation * model.diameter);
+  const std::string limit = millimetres(model.parameters.slight_deviation * model.diameter, 2);
   std::vector<std::string> sentences;
   for (const NearSymmetry& near : model.near_symmetries)
   {
@@ -82,7 +83,7 @@ std::vector<std::string> describeSlightTurns(const TrainedModel& model)
     sentences.push_back((near.slight_all_around ? "any turn" : "turns by " + anglesText(turns) + " degrees") +
                         " about " + axisText(near.axis) +
                         " may be left open where a view does not tell: they move the surface by " +
-                        millimetreText((*most)->deviation) + ", and up to " + limit + " is slight");
+                        millimetres((*most)->deviation, 2) + ", and up to " + limit + " is slight");
   }
   if (sentences.empty() && !model.near_symmetries.empty())
     sentences.push_back("no turn may be left open where a view does not tell: none moves the surface by " + limit +

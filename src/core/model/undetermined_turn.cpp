@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "../common/parameter_text.hpp"
 #include "axis_text.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 
 namespace bin_picking
 {
@@ -48,7 +48,7 @@ std::string describe(const UndeterminedTurn& turn)
       text += (text.empty() ? "it may as well be turned by " : " or ") + roundedText(angle * 180 / M_PI, 0);
     text += " deg " + about;
   }
-  return text + ": what tells it, up to " + millimetreText(turn.deviation) + " high or deep, is not seen";
+  return text + ": what tells it, up to " + millimetres(turn.deviation, 2) + " high or deep, is not seen";
 }
 
 std::vector<Pose> sampledTurns(const UndeterminedTurn& turn, const Symmetry& symmetry, int steps)

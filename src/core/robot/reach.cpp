@@ -5,29 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iomanip>
 #include <limits>
-#include <locale>
 #include <optional>
-#include <sstream>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 
 namespace bin_picking
 {
 namespace
 {
 constexpr double MAX_TURN_STEP = 0.05;  // rad of the flange between two poses that are tried
-
-std::string number(double value, int digits, const char* unit)
-{
-  std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream << std::fixed << std::setprecision(digits) << value << ' ' << unit;
-  return stream.str();
-}
-
-std::string degrees(double angle) { return number(angle * 180 / M_PI, 1, "deg"); }
 
 /// What fails, and how far the way went until there: whole waypoints and the share of the line to the next.
 struct Fault
@@ -147,9 +135,9 @@ private:
       return fault("the elbow would be " + degrees(margin.elbow) + " from being stretched or folded, at least " +
                    degrees(parameters_.min_elbow_angle) + " are required (min_elbow_angle)");
     if (margin.shoulder < parameters_.min_shoulder_distance)
-      return fault("the wrist would be " + number(margin.shoulder, 3, "m") +
+      return fault("the wrist would be " + millimetres(margin.shoulder) +
                    " from the plane of the shoulder's axes, at least " +
-                   number(parameters_.min_shoulder_distance, 3, "m") + " are required (min_shoulder_distance)");
+                   millimetres(parameters_.min_shoulder_distance) + " are required (min_shoulder_distance)");
     return std::nullopt;
   }
 
