@@ -8,6 +8,7 @@
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/common/figures.hpp"
+#include "bin_picking_perception/grasping/obstacles.hpp"
 #include "grip_closing.hpp"
 #include "held_part.hpp"
 
