@@ -50,7 +50,7 @@ def in_inverse_millimetres(config):
     """The same numbers of a configuration, read as a mean curvature in 1/mm."""
     values = real_bins.read_yaml(config)["training"]
     return {"curvature_measure": "mean_curvature",
-            **{key: f"{str(values[key]).removesuffix('/mm')}/mm"
+            **{key: str(values[key]).split("/")[0] + "/mm"
                for key in ("d_cur", "low_curvature_max", "high_curvature_min")}}
 
 
