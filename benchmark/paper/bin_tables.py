@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
-"""Tables 6 to 8 and the ablations: whole bins."""
-import json
+"""Tables 6 and 7 and the ablations: whole bins."""
 import math
 
 import cells
@@ -126,37 +125,6 @@ def real_listed(results, plan):
     table.notes = ["Six clouds of a real stereo camera. The list holds a few elbows of each; the paper's presets return"
                    " five poses at most, so that they cannot find them all where more lie free."]
     return table
-
-
-def picking(options):
-    table = Table("Table 8: capture success rate", ["", "attempts", "successes", "failures", "rate, %"], [],
-                  command="--picking FILE.json")
-    total, success, failure, share = published("8", "Cur-PPF + ICP")
-    table.rows.append(["paper, real cell", str(total), str(success), str(failure), str(share)])
-    if not options.picking:
-        table.notes = ["Ours stays empty: it comes from the picking benchmark, whose JSON file was not given"
-                       " (--picking FILE.json)."]
-        return table
-    with open(options.picking, encoding="utf-8") as file:
-        outcome = json.load(file)
-    found = {key: value for key, value in flattened(outcome) if key.split("/")[-1] in ("attempts", "successes")}
-    attempts = next((value for key, value in found.items() if key.endswith("attempts")), None)
-    successes = next((value for key, value in found.items() if key.endswith("successes")), None)
-    if attempts is None or successes is None:
-        table.notes = [f"{options.picking} has no 'attempts' and 'successes'; give the JSON report of the picking"
-                       " benchmark."]
-        return table
-    table.rows.append(["**ours, virtual cell**", str(attempts), str(successes), str(attempts - successes),
-                       number(100 * successes / max(1, attempts))])
-    return table
-
-
-def flattened(node, path=""):
-    if isinstance(node, dict):
-        for key, value in node.items():
-            yield from flattened(value, f"{path}/{key}")
-    elif isinstance(node, (int, float)):
-        yield path, node
 
 
 def ablations(results, plan):

@@ -13,7 +13,8 @@ NAN = math.nan
 class Results:
     """What has been run so far, by the name of the cell."""
 
-    def __init__(self, plan, out):
+    def __init__(self, plan, out, picking=()):
+        self.picking = list(picking)  # rows of Table 8
         self.by_name = {}
         self.groups = {}
         for cell in plan.cells:

@@ -8,6 +8,7 @@ import figures
 import gallery
 import machine
 import page
+import picking
 import summary
 import tables
 from tables import Table
@@ -30,11 +31,12 @@ def sections(results, plan, options):
         tables.retrieval_details(results, plan), tables.laser(results, plan)])]
     bins = [("The paper's tables: bins", [
         bin_tables.rates(results, plan), bin_tables.times(results, plan), bin_tables.behind(results, plan),
-        bin_tables.real_listed(results, plan), bin_tables.picking(options)])]
+        bin_tables.real_listed(results, plan),
+        picking.table(results.picking, options.picking, options.package)])]
     beyond = [("Where the paper does not look", [tables.partial(results, plan), tables.occlusion(results, plan)]),
               ("Ablations", [bin_tables.ablations(results, plan), bin_tables.noise(results, plan)])]
     if options.dataset:
-        return [("Summary", [claims]), ("Bins", bins[0][1][:3]),
+        return [("Summary", [claims]), ("Bins", bins[0][1][:3] + (bins[0][1][-1:] if results.picking else [])),
                 ("Single parts as point sets", [tables.retrieval_details(results, plan),
                                                 tables.partial(results, plan)])]
     return [("Summary", [claims])] + whole + bins + beyond
@@ -91,7 +93,7 @@ def markdown(all_sections, said, text, warning, failures):
 
 
 def write(options, plan, out, failures):
-    results = figures.Results(plan, out)
+    results = figures.Results(plan, out, picking.read(options.picking))
     file = out / "machine.json"
     about = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
     text, warning = about_text(about, plan, results)

@@ -20,6 +20,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 
 import cells  # noqa: E402
 import machine  # noqa: E402
+import picking  # noqa: E402
 import report  # noqa: E402
 
 TABLES = ("retrieval", "laser", "bins", "real", "ablations")
@@ -110,7 +111,8 @@ def parse():
     parser.add_argument("--parts", nargs="+", default=[], help="only these of the data set")
     parser.add_argument("--config", default="", metavar="FILE", help="constants for the own parts (default:"
                         " config/paper/three_way_tube.yaml)")
-    parser.add_argument("--picking", default="", metavar="FILE", help="report.json of the picking benchmark, Table 8")
+    parser.add_argument("--picking", nargs="+", action="extend", default=[], metavar="FILE", help="for Table 8: what"
+                        " benchmark_picking --json has written, one file or several")
     parser.add_argument("-j", dest="jobs", type=int, default=max(1, (os.cpu_count() or 2)), metavar="N",
                         help="experiments at once, each on one thread (default: all processors)")
     parser.add_argument("--write", metavar="FILE", default="", help="also write the Markdown report there")
@@ -134,6 +136,7 @@ def note_machine(out, version, load, others):
 
 def main():
     options = parse()
+    picking.read(options.picking)  # a wrong file is told before anything has run
     out = pathlib.Path(options.out)
     for folder in ("cells", "pictures", "models"):
         (out / folder).mkdir(parents=True, exist_ok=True)
