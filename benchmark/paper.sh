@@ -32,6 +32,6 @@ while [ $# -gt 0 ]; do
   esac
 done
 models_folder "$out/models" >/dev/null
-code=$(cat "$out/models/code" "$experiment" | cksum)  # figures of other code are not kept
+code=$(cat "$out/models/code" "$program" "$experiment" | cksum)  # figures of other code are not kept
 exec "$source_dir/benchmark/paper/run.py" --program "$program" --experiment "$experiment" --package "$source_dir" \
   --version "$version" --code "$code" -o "$out" ${arguments[@]+"${arguments[@]}"}

@@ -9,6 +9,7 @@ from tables import Table, average, holds_everywhere, missing_of, number, publish
 
 COLUMNS = {"three_way_tube": "Three-Way Tube", "upright_column": "Pillar"}
 IN_PAPER = ("PPF", "Cur-PPF", "PPF + ICP", "Cur-PPF + ICP")
+BIN_CELLS = ("bins_", "real_", "own_")
 REAL_TOP = 5  # best poses of a real bin that are kept
 
 
@@ -46,7 +47,8 @@ def only_option(results):
 def rates(results, plan):
     columns = sources(results)
     table = Table("Table 6: matching rate in bins, %", ["method"] + [heading for heading, _, _ in columns] +
-                  ["average of the two"], [], command=only_option(results), missing=missing_of(plan, "bins"))
+                  ["average of the two"], [], command=only_option(results),
+                  cells=BIN_CELLS, missing=missing_of(plan, "bins"))
     two = [column for column in columns if column[0] in COLUMNS.values()]
     for name in names_of(columns):
         if name in IN_PAPER:
@@ -68,7 +70,7 @@ def rates(results, plan):
 def times(results, plan):
     columns = sources(results)
     table = Table("Table 7: time in bins, ms a scene", ["method"], [], command=only_option(results),
-                  missing=missing_of(plan, "bins"))
+                  cells=BIN_CELLS, missing=missing_of(plan, "bins"))
     for heading, _, _ in columns:
         table.columns += [f"{heading}: ms", "of PPF's"]
     for name in names_of(columns):
@@ -97,7 +99,8 @@ def behind(results, plan):
     table = Table("Behind Tables 6 and 7: what the matching rate hides",
                   ["method", "part", "rate, %", "right, of the kept poses, %", "first one right, %",
                    "wrong, of poses with a rate of 85 % or more, %", "right ones off by", "votes, of PPF's"], [],
-                  command=only_option(results), missing=missing_of(plan, "bins"))
+                  command=only_option(results),
+                  cells=BIN_CELLS, missing=missing_of(plan, "bins"))
     for heading, group, top in columns:
         is_real = heading == "real elbows"
         for name in names_of(columns):
@@ -119,7 +122,7 @@ def behind(results, plan):
 def real_listed(results, plan):
     group = results.named("real_")
     table = Table("Real elbow bins: silver poses that are found, %", ["method", "found among all returned poses"], [],
-                  command="--only real", missing=missing_of(plan, "real"))
+                  command="--only real", cells=("real_",), missing=missing_of(plan, "real"))
     for name in figures.methods_of(group[0]) if group else []:
         table.rows.append([name, figures.found_of_listed(figures.runs_of(group, name)).text()])
     table.notes = ["Six clouds of a real stereo camera. The list holds a few elbows of each; the paper's presets return"
@@ -131,7 +134,7 @@ def ablations(results, plan):
     group = results.named("ablation_")
     table = Table("Ablations: Cur-PPF + ICP on the three-way tube, one thing done otherwise",
                   ["ingredient", "in place", "rate, %", "right, of the best five, %", "first one right, %",
-                   "curvature bins", "votes", "time"], [], command="--only ablations",
+                   "curvature bins", "votes", "time"], [], command="--only ablations", cells=("ablation_",),
                   missing=missing_of(plan, "ablations"))
     if not group:
         return table
@@ -153,7 +156,7 @@ def ablations(results, plan):
 
 def noise(results, plan):
     table = Table("Depth noise of the sensor, three-way tube: right of the best five, %; mean rate, %", ["method"] + [
-        f"{value} mm" for value in cells.SENSOR_NOISES], [], command="--only ablations",
+        f"{value} mm" for value in cells.SENSOR_NOISES], [], command="--only ablations", cells=("noise_",),
         missing=missing_of(plan, "ablations"))
     groups = {value: results.named(f"noise_{value}_") for value in cells.SENSOR_NOISES}
     there = [group for group in groups.values() if group]

@@ -64,7 +64,7 @@ def table_of(table):
                  "".join(f"<th>{inline(column)}</th>" for column in table.columns) + "</tr></thead><tbody>" +
                  "".join(row_of(row, len(table.columns)) for row in rows) + "</tbody></table></div>")
     notes = table.notes + ([f"Left out: {table.missing}."] if table.missing else [])
-    notes += [f"`benchmark/paper.sh {table.command}`"] if table.command else []
+    notes += [f"`{table.command}`{'; ' + table.origin if table.origin else ''}"] if table.command else []
     return parts + [f'<p class="soft">{"<br>".join(inline(note) for note in notes)}</p>']
 
 
@@ -97,11 +97,10 @@ def html_navigation(all_sections):
     return "<nav>" + "".join(links + ['<a href="#figures">Figures</a>', '<a href="#run">How it was run</a>']) + "</nav>"
 
 
-def page_body(all_sections, said, introduction, text, warning, failures, pictures):
+def page_body(all_sections, said, introduction, text, warnings, failures, pictures):
     body = ["<h1>Cur-PPF: the paper's experiments, run again</h1>", f"<p>{inline(introduction)}</p>",
             html_navigation(all_sections)]
-    if warning:
-        body.append(f'<p class="warning">{inline(warning.lstrip("> ").strip())}</p>')
+    body += [f'<p class="warning">{inline(warning.lstrip("> ").strip())}</p>' for warning in warnings]
     if said:
         body.append('<div class="card"><ul class="said">' + "".join(f"<li>{inline(s)}</li>" for s in said) +
                     "</ul></div>")

@@ -48,8 +48,8 @@ def field(node, key, kind, where, file):
     if not isinstance(node, dict) or key not in node:
         raise ValueError(f"{file} has no '{key}' in {where}; {CURE}")
     if not isinstance(node[key], kind) or (kind is int and isinstance(node[key], bool)):
-        raise ValueError(f"'{key}' in {where} of {file} is {json.dumps(node[key])[:40]}, which benchmark_picking does not"
-                         f" write; {CURE}")
+        raise ValueError(f"'{key}' in {where} of {file} is {json.dumps(node[key])[:40]}, which benchmark_picking does"
+                         f" not write; {CURE}")
     return node[key]
 
 
@@ -76,8 +76,8 @@ def check(study, file):
             for a, attempt in enumerate(one["attempts"]):
                 place = f"{where}.attempts[{a}]"
                 if field(attempt, "outcome", str, place, file) not in OUTCOMES:
-                    raise ValueError(f"the outcome in {place} of {file} is '{attempt['outcome']}', but it must be one of "
-                                     f"{', '.join(OUTCOMES)}; {CURE}")
+                    raise ValueError(f"the outcome in {place} of {file} is '{attempt['outcome']}', but it must be one"
+                                     f" of {', '.join(OUTCOMES)}; {CURE}")
                 field(attempt, "cause", str, place, file)
                 field(attempt, "called_free", bool, place, file)
 
@@ -129,8 +129,8 @@ def read(files):
             for one in part["bins"]:
                 key = (part["name"], how, one["seed"])
                 if key in seen:
-                    raise ValueError(f"bin {one['seed']} of {part['name']} is in {seen[key]} and again in {file}: it would"
-                                     " count twice; leave one of the files out")
+                    raise ValueError(f"bin {one['seed']} of {part['name']} is in {seen[key]} and again in {file}: it"
+                                     " would count twice; leave one of the files out")
                 seen[key] = file
                 row.bins.append(one)
     return sorted(rows.values(), key=lambda row: (row.part != PAPER_PART, row.part, row.how))
@@ -180,23 +180,23 @@ def table(rows, files, package):
 def notes(rows, ways):
     if not rows:
         return ["Ours stays empty: no report of the picking benchmark was given. `benchmark_picking"
-                " config/parts/three_way_tube --gripper config/grippers/ag95.yaml --robot config/robots/ur5e.yaml --json"
-                " picks.json` writes one (built with -DBIN_PICKING_BENCHMARKS=ON); then `--picking picks.json`."]
+                " config/parts/three_way_tube --gripper config/grippers/ag95.yaml --robot config/robots/ur5e.yaml"
+                " --json picks.json` writes one (built with -DBIN_PICKING_BENCHMARKS=ON); then `--picking picks.json`."]
     said = ["Ours: " + "; ".join(f"{how}{mark(how, ways)}" for how in ways) + ". The paper's row is Cur-PPF + ICP."]
     attempts = sum(len(row.attempts()) for row in rows)
     shakes = sum(row.shakes() for row in rows)
     return said + [
-        "The virtual cell judges a grip by the true geometry, not by what planned it: the gripper goes straight in, closes"
-        " and comes straight out; touching a part, the bin or the table where it must not is a collision, and holding"
-        " nothing, or not as meant, or outside of the friction cone, is a miss. Only a part that is taken without any"
-        " collision is a success. Nothing slips, tips or rolls, and the description of the gripper is exact: a real cell is"
-        " less kind.",
-        "A shake: where no grasp is allowed, nothing is tried; the bin is shaken, what is left in it falls anew, and it goes"
-        f" on. That is no failure and no pick: here {shakes} shakes beside {attempts} picks"
-        f" ({number(shakes / max(1, attempts), 2)} a pick). The paper tells of none and does not say what was done where"
-        " nothing could be grasped, so that the two rates are not of the same rule.",
-        "Called free: collisions with something that the answer had checked and vouched for. Left: parts still in the bins"
-        " when they were given up or the number of picks was reached."]
+        "The virtual cell judges a grip by the true geometry, not by what planned it: the gripper goes straight in,"
+        " closes and comes straight out; touching a part, the bin or the table where it must not is a collision, and"
+        " holding nothing, or not as meant, or outside of the friction cone, is a miss. Only a part that is taken"
+        " without any collision is a success. Nothing slips, tips or rolls, and the description of the gripper is"
+        " exact: a real cell is less kind.",
+        "A shake: where no grasp is allowed, nothing is tried; the bin is shaken, what is left in it falls anew, and it"
+        f" goes on. That is no failure and no pick: here {shakes} shakes beside {attempts} picks"
+        f" ({number(shakes / max(1, attempts), 2)} a pick). The paper tells of none and does not say what was done"
+        " where nothing could be grasped, so that the two rates are not of the same rule.",
+        "Called free: collisions with something that the answer had checked and vouched for. Left: parts still in the"
+        " bins when they were given up or the number of picks was reached."]
 
 
 def of_the_paper(rows):

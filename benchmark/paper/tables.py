@@ -21,6 +21,8 @@ class Table:
     notes: list = dataclasses.field(default_factory=list)
     missing: str = ""   # why it has no rows
     command: str = ""
+    cells: tuple = ()   # how the names begin of the experiments that it shows
+    origin: str = ""    # version, machine and load, filled in by the report
 
 
 def number(value, digits=1):
@@ -61,7 +63,7 @@ def models(results, method, what, **equal):
 
 def retrieval_rates(results, plan):
     table = Table("Tables 1 and 3: matching rate on the Retrieval models, %", ["method"] +
-                  PUBLISHED["1"]["columns"], [], command="--only retrieval",
+                  PUBLISHED["1"]["columns"], [], command="--only retrieval", cells=("whole_",),
                   missing=missing_of(plan, "retrieval"))
     rate = lambda runs: figures.rate(runs) if runs else math.nan
     for row in ("PPF", "Cur-PPF (unweighted)", "Cur-PPF"):
@@ -80,7 +82,7 @@ def retrieval_rates(results, plan):
 
 def retrieval_times(results, plan):
     table = Table("Tables 2 and 4: time on the Retrieval models, ms a scene", ["method"] + PUBLISHED["2"]["columns"],
-                  [], command="--only retrieval", missing=missing_of(plan, "retrieval"))
+                  [], command="--only retrieval", cells=("whole_",), missing=missing_of(plan, "retrieval"))
     time = lambda runs: figures.mean([run["ms"] for run in runs])
     base = average(models(results, "PPF", time, noise=0.1))
     for row in ("PPF", "Cur-PPF (unweighted)", "Cur-PPF"):
@@ -106,7 +108,7 @@ def retrieval_details(results, plan):
     """What the matching rate does not tell."""
     table = Table("Behind Tables 1-4: all models together, by noise",
                   ["method", "noise", "rate, %", "right (ADD < 0.1 d), %", "worst ADD / d", "votes a pair",
-                   "votes, of PPF's", "time, of PPF's"], [], command="--only retrieval",
+                   "votes, of PPF's", "time, of PPF's"], [], command="--only retrieval", cells=("whole_",),
                   missing=missing_of(plan, "retrieval"))
     all_results = results.named("whole_")
     names = figures.methods_of(all_results[0]) if all_results else []
@@ -133,7 +135,7 @@ def partial(results, plan):
     table = Table("Where the paper does not look: one view, and one view in clutter",
                   ["method", "view: rate, %", "view: right, %", "clutter: rate, %", "clutter: right, %",
                    "clutter: votes, of PPF's", "clutter: time, of PPF's"], [], command="--only retrieval",
-                  missing=missing_of(plan, "retrieval"))
+                  cells=("view_", "clutter_"), missing=missing_of(plan, "retrieval"))
     views, clutter = results.named("view_"), results.named("clutter_")
     for name in figures.methods_of((views + clutter)[0]) if views + clutter else []:
         seen, hidden = figures.runs_of(views, name), figures.runs_of(clutter, name)
@@ -152,7 +154,7 @@ def occlusion(results, plan):
     steps = [(0, 0.25), (0.25, 0.5), (0.5, 0.75), (0.75, 0.9), (0.9, 1.01)]
     table = Table("Recognition against occlusion: right poses in clutter, %, by how much of the visible side is seen",
                   ["method"] + [f"{100 * low:.0f}-{min(100, 100 * high):.0f} %" for low, high in steps], [],
-                  command="--only retrieval laser", missing=missing_of(plan, "retrieval"))
+                  command="--only retrieval laser", cells=("clutter_", "laser_"), missing=missing_of(plan, "retrieval"))
     for start, label in (("clutter_", ""), ("laser_", "Table 5: ")):
         clutter = [result for result in results.named(start) if isinstance(result["specification"]["scene"], str)]
         for name in figures.methods_of(clutter[0]) if clutter else []:
@@ -168,7 +170,7 @@ def laser(results, plan):
     table = Table("Table 5: several different objects in one scene, matching rate, %",
                   ["method"] + [name for name, _ in cells.LASER] + ["Average", "rs1 (real scan)", "right, %",
                                                                    "rs1: off by"], [],
-                  command="--only laser", missing=missing_of(plan, "laser"))
+                  command="--only laser", cells=("laser_",), missing=missing_of(plan, "laser"))
     results_of = {name: results.get(f"laser_{name}") for name, _ in cells.LASER}
     there = [result for result in results_of.values() if result]
     scan = results.get("laser_rs1")

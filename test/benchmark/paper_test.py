@@ -7,6 +7,7 @@ import json
 import math
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -72,10 +73,10 @@ class Arithmetic(unittest.TestCase):
 
 def attempt(outcome, cause, called_free=False):
     """As benchmark/picking/json_report.cpp writes it; no number where nothing was meant."""
-    return {"cloud": 1, "part": "three_way_tube", "grasp": "wall", "tilt": 0.1, "clearance": 0.004, "matching_rate": 0.97,
-            "score": 0.9, "center_error": None, "rotation_error": None, "outcome": outcome, "cause": cause, "id": 3,
-            "final_opening": 0.03, "offset": 0.001, "body": "", "obstacle": "", "depth": 0.0, "called_free": called_free,
-            "what": "the part is held"}
+    return {"cloud": 1, "part": "three_way_tube", "grasp": "wall", "tilt": 0.1, "clearance": 0.004,
+            "matching_rate": 0.97, "score": 0.9, "center_error": None, "rotation_error": None, "outcome": outcome,
+            "cause": cause, "id": 3, "final_opening": 0.03, "offset": 0.001, "body": "",
+            "obstacle": "", "depth": 0.0, "called_free": called_free, "what": "the part is held"}
 
 
 def emptied(seed, attempts, shakes=1, left=0):
@@ -85,8 +86,8 @@ def emptied(seed, attempts, shakes=1, left=0):
 
 
 def picking_report(bins, part="three_way_tube", seeds="1..2", options=(), truth=False):
-    return {"command": ["benchmark_picking", f"config/parts/{part}", "--gripper", "config/grippers/ag95.yaml", "--seeds",
-                        seeds, "--json", "picks.json", *options],
+    return {"command": ["benchmark_picking", f"config/parts/{part}", "--gripper", "config/grippers/ag95.yaml",
+                        "--seeds", seeds, "--json", "picks.json", *options],
             "sensor": "structured_light", "gripper": "ag95", "truth": truth, "parts": [{"name": part, "bins": bins}]}
 
 
@@ -176,6 +177,92 @@ class Picking(unittest.TestCase):
         self.assertEqual(verdict(400, 0), True)
         self.assertEqual(verdict(10, 0), "cannot be told")
         self.assertEqual(verdict(50, 50), False)
+
+
+STUB = """#!/usr/bin/env python3
+import json, pathlib, sys
+specification = json.loads(pathlib.Path(sys.argv[1]).read_text())
+pose = {"rate": 0.97, "verdict": "right", "translation": 0.001, "rotation": 0.01}
+runs = [{"method": m, "scene": "one", "ms": 10.0, "votes": 100.0, "pairs": 10, "detections": [pose], "instances": []}
+        for m in range(len(specification["methods"]))]
+result = {"models": [], "runs": runs, "scenes": 1, "specification": specification}
+pathlib.Path(sys.argv[2]).write_text(json.dumps(result))
+"""
+
+
+class Mixing(unittest.TestCase):
+    """Results of other code, data or options are made anew or left out, with a stand-in for the program."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        self.out = self.folder / "out"
+        self.experiment = self.folder / "experiment"
+        self.experiment.write_text(STUB, encoding="utf-8")
+        self.experiment.chmod(0o755)
+        for scene in ("one", "two"):
+            (self.folder / "set" / scene).mkdir(parents=True)
+            (self.folder / "set" / scene / "scene.pcd").write_text(scene, encoding="utf-8")
+        self.config = self.folder / "constants.yaml"
+        shutil.copy(PACKAGE / "config/paper/three_way_tube.yaml", self.config)
+
+    def run_paper(self, *arguments, code="first"):
+        outcome = subprocess.run(
+            [sys.executable, str(BENCHMARK / "paper" / "run.py"), "--program", "none", "--experiment",
+             str(self.experiment), "--package", str(PACKAGE), "-o", str(self.out), "--dataset", str(self.folder / "set"),
+             "--config", str(self.config), "-j", "1", "--code", code, "--version", f"version-{code}", *arguments],
+            check=False, capture_output=True, text=True)
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+        return outcome.stderr, (self.out / "report.md").read_text(encoding="utf-8")
+
+    def test_what_is_finished_is_kept(self):
+        self.run_paper()
+        said, _ = self.run_paper()
+        self.assertEqual(said.count(": kept"), 2)
+
+    def test_every_table_names_command_version_machine_and_load(self):
+        _, page = self.run_paper()
+        for line in ("benchmark/paper.sh --dataset DIR", "version version-first", "load before it"):
+            self.assertEqual(page.count(line) >= 3, True, line)
+
+    def test_other_code_runs_all_again(self):
+        self.run_paper()
+        said, page = self.run_paper(code="second")
+        self.assertNotIn(": kept", said)
+        self.assertNotIn("version-first", page)
+
+    def test_other_constants_or_clouds_run_again_what_they_concern(self):
+        self.run_paper()
+        (self.folder / "set/one/scene.pcd").write_text("another cloud", encoding="utf-8")
+        said, _ = self.run_paper()
+        self.assertEqual(said.count(": kept"), 1)
+        with self.config.open("a", encoding="utf-8") as file:
+            file.write("# another file\n")
+        said, _ = self.run_paper()
+        self.assertEqual(said.count(": kept"), 0)
+
+    def test_a_report_of_what_is_there_leaves_out_other_code_and_says_so(self):
+        self.run_paper()
+        self.run_paper("--cells", "own_one", code="second")
+        _, page = self.run_paper("--report-only", code="second")
+        self.assertIn("1 results in this folder are left out", page)
+        self.assertIn("own_two", page)
+        self.assertNotIn("version-first", page)
+
+    def test_a_report_only_of_unknown_code_shows_one_code(self):
+        self.run_paper()
+        _, page = self.run_paper("--report-only", code="third")
+        self.assertIn("version-first", page)
+        self.assertNotIn("left out", page)
+
+    def test_a_result_without_its_stamp_is_not_finished(self):
+        self.run_paper()
+        (self.out / "cells/own_one.done").unlink()
+        _, page = self.run_paper("--report-only")
+        self.assertIn("own_one", page[page.index("left out"):])
+        said, _ = self.run_paper()
+        self.assertEqual(said.count(": kept"), 1)
 
 
 class SmallRun(unittest.TestCase):
