@@ -200,5 +200,8 @@ def notes(rows, ways):
 
 
 def of_the_paper(rows):
-    """Our bins of tubes with detections: what the paper's 95 of 100 may be held against."""
-    return [row for row in rows if row.part == PAPER_PART and not row.is_truth]
+    """What the paper's 95 of 100 may be held against, picks of tubes that were detected: (successes, shakes)."""
+    tubes = [row for row in rows if row.part == PAPER_PART and not row.is_truth]
+    shares = [row.taken() for row in tubes]
+    return (Share(sum(share.hits for share in shares), sum(share.total for share in shares)),
+            sum(row.shakes() for row in tubes))

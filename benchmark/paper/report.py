@@ -5,6 +5,7 @@ import pathlib
 
 import bin_tables
 import figures
+import gains
 import gallery
 import machine
 import page
@@ -27,6 +28,7 @@ def sections(results, plan, options):
                    [claim.row() for claim in summary.claims(results)],
                    ["Every verdict is computed from the tables below; \"holds\" is about the claim on our data, not"
                     " about their scenes."])
+    gained = gains.table(results)
     whole = [("The paper's tables: public data", [
         tables.retrieval_rates(results, plan), tables.retrieval_times(results, plan),
         tables.retrieval_details(results, plan), tables.laser(results, plan)])]
@@ -37,10 +39,10 @@ def sections(results, plan, options):
     beyond = [("Where the paper does not look", [tables.partial(results, plan), tables.occlusion(results, plan)]),
               ("Ablations", [bin_tables.ablations(results, plan), bin_tables.noise(results, plan)])]
     if options.dataset:
-        return [("Summary", [claims]), ("Bins", bins[0][1][:3] + (bins[0][1][-1:] if results.picking else [])),
+        return [("Summary", [gained, claims]), ("Bins", bins[0][1][:3] + (bins[0][1][-1:] if results.picking else [])),
                 ("Single parts as point sets", [tables.retrieval_details(results, plan),
                                                 tables.partial(results, plan)])]
-    return [("Summary", [claims])] + whole + bins + beyond
+    return [("Summary", [gained, claims])] + whole + bins + beyond
 
 
 def command_of(options, words):
@@ -129,7 +131,7 @@ def write(options, plan, out, failures):
     for table in (table for _, group in all_sections for table in group):
         table.command = command_of(options, table.command) if table.command else ""
         table.origin = stamps.sentence(results.stamps_of(table.cells)) if table.cells else ""
-    said = summary.headline(results)
+    said = gains.headline(results)
     content = "\n".join(markdown(all_sections, said, text, warnings, failures)).rstrip() + "\n"
     for path in [out / "report.md"] + ([options.write] if options.write else []):
         with open(path, "w", encoding="utf-8") as stream:
