@@ -73,6 +73,8 @@ def figure_of(figure):
     for caption, markup in figure.items:
         big = ' class="big"' if "jpeg" in markup[:60] or "chart wide" in markup[:80] else ""
         items.append(f"<figure{big}>{markup}<figcaption>{inline(caption)}</figcaption></figure>")
+    if not items:
+        return [f"<h3>{inline(figure.title)}</h3>", f'<p class="soft">Not drawn: {inline(figure.missing)}.</p>']
     return [f"<h3>{inline(figure.title)}</h3>", f'<p class="soft">{inline(figure.note)}</p>' if figure.note else "",
             f'<div class="items">{"".join(items)}</div>']
 

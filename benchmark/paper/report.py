@@ -31,7 +31,8 @@ def sections(results, plan, options):
     gained = gains.table(results)
     whole = [("The paper's tables: public data", [
         tables.retrieval_rates(results, plan), tables.retrieval_times(results, plan),
-        tables.retrieval_details(results, plan), tables.laser(results, plan)])]
+        tables.retrieval_details(results, plan), tables.by_model(results, plan),
+        tables.laser(results, plan)])]
     bins = [("The paper's tables: bins", [
         bin_tables.rates(results, plan), bin_tables.times(results, plan), bin_tables.behind(results, plan),
         bin_tables.real_listed(results, plan),
@@ -41,7 +42,7 @@ def sections(results, plan, options):
     if options.dataset:
         return [("Summary", [gained, claims]), ("Bins", bins[0][1][:3] + (bins[0][1][-1:] if results.picking else [])),
                 ("Single parts as point sets", [tables.retrieval_details(results, plan),
-                                                tables.partial(results, plan)])]
+                                                tables.by_model(results, plan), tables.partial(results, plan)])]
     return [("Summary", [gained, claims])] + whole + bins + beyond
 
 

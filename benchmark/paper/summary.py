@@ -140,7 +140,8 @@ def bin_claims(results):
               f"wrong, of Cur-PPF + ICP's poses above 85 %: {wrong.text()}", within(wrong, 0.05)).explained(
                   "at a threshold of 5 mm a wrong pose may match the surface of a thin-walled part too", False),
         Claim("(not in the paper) our preset fast takes less time than Cur-PPF + ICP, and more of its poses are"
-              " right", "-", f"{factor(fast)}; right, %: {right['Cur-PPF + ICP'].text()} to {right['our preset fast'].text()}",
+              " right", "-", f"{factor(fast)}; right, %: {right['Cur-PPF + ICP'].text()} to"
+              f" {right['our preset fast'].text()}",
               None if math.isnan(fast) else False if fast >= 1 else refined_better)]
 
 

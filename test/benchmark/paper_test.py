@@ -65,6 +65,18 @@ class Arithmetic(unittest.TestCase):
         self.assertAlmostEqual(low, 0.839, places=3)
         self.assertAlmostEqual(high, 1.0)
 
+    def test_equal_rates_are_no_gain_and_no_loss(self):
+        self.assertEqual([summary.raises(90.0, after) for after in (95.0, 90.5, 85.0, math.nan)],
+                         [True, "no difference seen", False, None])
+
+    def test_a_share_is_told_as_a_factor_in_its_direction(self):
+        self.assertEqual([gains.factor(share) for share in (0.5, 2.0, math.nan)], ["2.0x less", "2.0x more", "-"])
+
+    def test_more_is_right_only_if_the_intervals_do_not_meet(self):
+        self.assertEqual(gains.compared(figures.Share(100, 100), figures.Share(50, 100)), "more")
+        self.assertEqual(gains.compared(figures.Share(2, 2), figures.Share(1, 2)), "no difference seen")
+        self.assertIsNone(summary.better(figures.Share(0, 0), figures.Share(1, 2)))
+
     def test_nothing_run_is_no_claim(self):
         plan = types.SimpleNamespace(cells=[])
         results = figures.Results(plan, pathlib.Path("nowhere"))
@@ -314,6 +326,7 @@ class SmallRun(unittest.TestCase):
         self.assertIn("uwa/parasaurolophus_low_normals2.ply", outcome.stderr)
         report = (self.folder / "out" / "report.md").read_text(encoding="utf-8")
         self.assertIn("uwa/parasaurolophus_low_normals2.ply", report)
+        self.assertIn("bins was not asked for (--only laser)", report)
 
 
 class Cells(unittest.TestCase):
