@@ -182,7 +182,8 @@ def notes(rows, ways):
         return ["Ours stays empty: no report of the picking benchmark was given. `benchmark_picking"
                 " config/parts/three_way_tube --gripper config/grippers/ag95.yaml --robot config/robots/ur5e.yaml"
                 " --json picks.json` writes one (built with -DBIN_PICKING_BENCHMARKS=ON); then `--picking picks.json`."]
-    said = ["Ours: " + "; ".join(f"{how}{mark(how, ways)}" for how in ways) + ". The paper's row is Cur-PPF + ICP."]
+    said = ["Ours: " + "; ".join(f"{how}{mark(how, ways)}" for how in ways) + ". The paper's row is Cur-PPF + ICP; the"
+            " interval beside its rate is computed from its counts."]
     attempts = sum(len(row.attempts()) for row in rows)
     shakes = sum(row.shakes() for row in rows)
     return said + [

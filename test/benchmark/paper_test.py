@@ -224,8 +224,9 @@ class Mixing(unittest.TestCase):
     def run_paper(self, *arguments, code="first"):
         outcome = subprocess.run(
             [sys.executable, str(BENCHMARK / "paper" / "run.py"), "--program", "none", "--experiment",
-             str(self.experiment), "--package", str(PACKAGE), "-o", str(self.out), "--dataset", str(self.folder / "set"),
-             "--config", str(self.config), "-j", "1", "--code", code, "--version", f"version-{code}", *arguments],
+             str(self.experiment), "--package", str(PACKAGE), "-o", str(self.out), "--dataset",
+             str(self.folder / "set"), "--config", str(self.config), "-j", "1", "--code", code, "--version",
+             f"version-{code}", *arguments],
             check=False, capture_output=True, text=True)
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
         return outcome.stderr, (self.out / "report.md").read_text(encoding="utf-8")
