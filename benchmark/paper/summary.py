@@ -47,7 +47,8 @@ class Claim:
     """A sentence of the paper, its figures and ours, and whether it holds here."""
 
     def __init__(self, claim, paper, ours, held, because=""):
-        self.claim, self.paper, self.ours, self.held = claim, paper, ours, held
+        self.claim, self.paper, self.held = claim, paper, held
+        self.ours = ours if held is not None else "-"
         self.because = because if held is not None else ""
 
     def explained(self, why, held=True):
@@ -162,7 +163,7 @@ def picking_claims(results):
     low, high = figures.wilson(taken.hits, taken.total)
     held = "cannot be told" if low <= success / total <= high else low > success / total
     return [Claim(f"A grasp succeeds {success} times of {total} (Table 8)", f"{success} of {total}",
-                  f"{taken.text()} with {shakes} shakes" if taken.total else "-", held if taken.total else None,
+                  f"{taken.text()} with {shakes} shakes", held if taken.total else None,
                   "a virtual cell, kinder than a real one, in which bins are shaken where nothing can be grasped")]
 
 
