@@ -24,11 +24,14 @@ arguments=()
 while [ $# -gt 0 ]; do
   case "$1" in
     -o) out=$(absolute "${2:?-o needs a folder}"); shift 2 ;;
-    --data|--dataset|--config|--picking|--write) arguments+=("$1" "$(absolute "${2:?$1 needs a path}")"); shift 2 ;;
+    --picking)
+      arguments+=("$1"); shift
+      while [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; do arguments+=("$(absolute "$1")"); shift; done ;;
+    --data|--dataset|--config|--write) arguments+=("$1" "$(absolute "${2:?$1 needs a path}")"); shift 2 ;;
     *) arguments+=("$1"); shift ;;
   esac
 done
 models_folder "$out/models" >/dev/null
-code=$(cat "$out/models/code" "$experiment" | cksum)  # figures of other code are not kept
+code=$(cat "$out/models/code" "$program" "$experiment" | cksum)  # figures of other code are not kept
 exec "$source_dir/benchmark/paper/run.py" --program "$program" --experiment "$experiment" --package "$source_dir" \
   --version "$version" --code "$code" -o "$out" ${arguments[@]+"${arguments[@]}"}

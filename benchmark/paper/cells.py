@@ -50,7 +50,7 @@ def in_inverse_millimetres(config):
     """The same numbers of a configuration, read as a mean curvature in 1/mm."""
     values = real_bins.read_yaml(config)["training"]
     return {"curvature_measure": "mean_curvature",
-            **{key: f"{str(values[key]).removesuffix('/mm')}/mm"
+            **{key: str(values[key]).split("/")[0] + "/mm"
                for key in ("d_cur", "low_curvature_max", "high_curvature_min")}}
 
 
@@ -226,7 +226,13 @@ class Plan:
         files = self.data("real", "pipes/Pipe_02.stl")
         if not files:
             return
-        dataset = real_bins.write_dataset(pathlib.Path(files[0]).parent, self.out / "elbows")
+        pipes = pathlib.Path(files[0]).parent
+        clouds = [truth.with_suffix(".pcd") for truth in sorted(pipes.glob("pipes_90_*.json"))]
+        absent = [str(cloud) for cloud in clouds if not cloud.exists()] if clouds else [f"{pipes}/pipes_90_*.json"]
+        if absent:
+            self.missing.append(Missing("real", "not there: " + ", ".join(absent)))
+            return
+        dataset = real_bins.write_dataset(pipes, self.out / "elbows")
         for scene in sorted(dataset.glob("pipes_*")):
             self.add(f"real_{scene.name}", "real", f"real elbows: {scene.name}", kind="bins", dataset=str(scene),
                      methods=bin_methods(self.config("three_way_tube")))
@@ -238,7 +244,11 @@ class Plan:
             self.add(f"own_{scene.name}", "bins", f"Tables 6-7: {scene.name}", kind="bins", dataset=scene.dataset,
                      split=self.options.split, parts=self.options.parts, max_scenes=scene.max_scenes,
                      methods=bin_methods(config))
-        for part in sorted(pathlib.Path(self.options.dataset).glob("parts/*/part.yaml")):
+        own_parts = sorted(pathlib.Path(self.options.dataset).glob("parts/*/part.yaml"))
+        if not own_parts:
+            self.missing.append(Missing("retrieval", f"{self.options.dataset} has no parts/*/part.yaml, which single"
+                                        " parts as point sets are made from"))
+        for part in own_parts:
             name = part.parent.name
             if self.options.only and "retrieval" not in self.options.only:
                 continue

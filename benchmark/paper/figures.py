@@ -5,6 +5,8 @@ import json
 import math
 import statistics
 
+import stamps
+
 MAX_ADD = 0.1        # of the diameter: a pose is a success below it
 GRASPABLE = 0.85     # matching rate above which the paper grasps (Section 3.2.2)
 NAN = math.nan
@@ -13,14 +15,25 @@ NAN = math.nan
 class Results:
     """What has been run so far, by the name of the cell."""
 
-    def __init__(self, plan, out):
+    def __init__(self, plan, out, picking=(), code=""):
+        self.picking = list(picking)  # rows of Table 8
         self.by_name = {}
-        self.groups = {}
+        self.stamps = {}    # of the same names
+        self.left_out = []  # names of results of other code, data or options
+        self.absent = []    # names of cells that have not been run
         for cell in plan.cells:
             file = out / "cells" / f"{cell.name}.json"
-            if file.exists():
+            stamp = stamps.read(out, cell.name)
+            if not file.exists():
+                self.absent.append(cell.name)
+            elif stamp.get("specification") != stamps.digest(cell) or stamp.get("code") != code:
+                self.left_out.append(cell.name)
+            else:
                 self.by_name[cell.name] = json.loads(file.read_text(encoding="utf-8"))
-                self.groups.setdefault(cell.group, []).append(cell.name)
+                self.stamps[cell.name] = stamp
+
+    def stamps_of(self, starts):
+        return [stamp for name, stamp in self.stamps.items() if name.startswith(tuple(starts))]
 
     def named(self, start):
         return [self.by_name[name] for name in self.by_name if name.startswith(start)]

@@ -7,6 +7,7 @@ import html
 
 import cells
 import figures
+from tables import missing_of
 
 
 @dataclasses.dataclass
@@ -14,6 +15,8 @@ class Figure:
     title: str
     note: str
     items: list  # of (caption, markup)
+    needs: tuple = ()  # groups of experiments whose pictures it shows
+    missing: str = ""  # why it has no items
 
 
 def embedded(path):
@@ -90,10 +93,11 @@ def overlays(out, results, start, method, title):
         result = results.get(f"{start}_{name}")
         if result and method in figures.methods_of(result):
             entries.append((name, f"{start}_{name}_{figures.methods_of(result).index(method)}.png"))
-    return Figure(title, "White: the scene; green: the model at the pose that was found.", pictures(out, entries))
+    return Figure(title, "White: the scene; green: the model at the pose that was found.", pictures(out, entries),
+                  ("retrieval",))
 
 
-def curvature(out, results, names, title, note):
+def curvature(out, results, names, title, note, needs):
     items = []
     for name in names:
         result = results.get(f"curvature_{name}")
@@ -102,14 +106,15 @@ def curvature(out, results, names, title, note):
         items += pictures(out, [(f"{name}: red high, blue low", f"curvature_{name}.png")])
         items.append((f"{name}: low to {result['low_max']:.3g}, high from {result['high_min']:.3g}",
                       histogram(result)))
-    return Figure(title, note, items)
+    return Figure(title, note, items, needs)
 
 
-def segmentation(out, part, title):
+def segmentation(out, results, part, title):
     captions = ["(a) one side of the model", "(b) its gray picture", "(c) the scene", "(d) gray from depth",
                 "(e) watershed segments", "(f) candidate targets", "(g) their points"]
-    return Figure(title, "A virtual bin, Algorithm 1, pixel and contour counts.", pictures(
-        out, [(caption, f"segmentation_{part}_{letter}.png") for caption, letter in zip(captions, "abcdefg")]))
+    entries = [(caption, f"segmentation_{part}_{letter}.png") for caption, letter in zip(captions, "abcdefg")]
+    return Figure(title, "A virtual bin, Algorithm 1, pixel and contour counts.",
+                  pictures(out, entries if results.get(f"segmentation_{part}") else []), ("bins",))
 
 
 def process(out, results):
@@ -120,7 +125,7 @@ def process(out, results):
             items += pictures(out, [(f"{part}: {name}", f"bins_{part}_{k}.jpg")
                                     for k, name in enumerate(figures.methods_of(result))])
     return Figure("Figure 16: from the bin to ranked poses", "Red, orange, yellow, green, blue: best first, with the"
-                  " matching rate (our preset: its score).", items)
+                  " matching rate (our preset: its score).", items, ("bins",))
 
 
 def laser(out, results):
@@ -131,22 +136,26 @@ def laser(out, results):
             methods = figures.methods_of(result)
             entries += [(f"{name}: {method}", f"laser_{name}_{methods.index(method)}.png")
                         for method in ("Cur-PPF", "Cur-PPF + ICP")]
-    return Figure("Figure 14: several objects, without and with ICP", "", pictures(out, entries))
+    return Figure("Figure 14: several objects, without and with ICP", "", pictures(out, entries), ("laser",))
 
 
 def figures_of(results, plan, out):
     names = [name for name, _, _ in cells.MODELS]
     all_figures = [
         charts(results),
-        segmentation(out, "three_way_tube", "Figure 5: segmentation and candidate targets, three-way tube"),
+        segmentation(out, results, "three_way_tube", "Figure 5: segmentation and candidate targets, three-way tube"),
         curvature(out, results, cells.PARTS, "Figure 7: curvature of the real parts",
-                  "Mean curvature in 1/m at a radius of 10 mm; ranges of Section 3.2.1."),
+                  "Mean curvature in 1/m at a radius of 10 mm; ranges of Section 3.2.1.", ("bins",)),
         overlays(out, results, "whole", "PPF", "Figure 10: PPF on the Retrieval models"),
         overlays(out, results, "whole", "Cur-PPF (unweighted)", "Figure 11: Cur-PPF, unweighted"),
         curvature(out, results, names, "Figure 12: curvature histograms of the six models",
-                  "Normal variation (no unit) at a radius of 15 mm; blue: low range, red: high range."),
+                  "Normal variation (no unit) at a radius of 15 mm; blue: low range, red: high range.",
+                  ("retrieval",)),
         overlays(out, results, "whole", "Cur-PPF", "Figure 13: Cur-PPF, weighted"),
         laser(out, results), process(out, results),
-        segmentation(out, "upright_column", "Figure 16, o to r: candidate targets of the upright column"),
+        segmentation(out, results, "upright_column", "Figure 16, o to r: candidate targets of the upright column"),
         overlays(out, results, "clutter", "Cur-PPF", "Beyond the paper: one view in clutter, Cur-PPF")]
-    return [figure for figure in all_figures if figure.items]
+    for figure in all_figures[1:]:
+        if not figure.items:
+            figure.missing = missing_of(plan, *figure.needs) or "its experiments were not run"
+    return [figure for figure in all_figures if figure.items or (figure.missing and not plan.options.dataset)]

@@ -64,7 +64,7 @@ def table_of(table):
                  "".join(f"<th>{inline(column)}</th>" for column in table.columns) + "</tr></thead><tbody>" +
                  "".join(row_of(row, len(table.columns)) for row in rows) + "</tbody></table></div>")
     notes = table.notes + ([f"Left out: {table.missing}."] if table.missing else [])
-    notes += [f"`benchmark/paper.sh {table.command}`"] if table.command else []
+    notes += [f"`{table.command}`{'; ' + table.origin if table.origin else ''}"] if table.command else []
     return parts + [f'<p class="soft">{"<br>".join(inline(note) for note in notes)}</p>']
 
 
@@ -73,6 +73,8 @@ def figure_of(figure):
     for caption, markup in figure.items:
         big = ' class="big"' if "jpeg" in markup[:60] or "chart wide" in markup[:80] else ""
         items.append(f"<figure{big}>{markup}<figcaption>{inline(caption)}</figcaption></figure>")
+    if not items:
+        return [f"<h3>{inline(figure.title)}</h3>", f'<p class="soft">Not drawn: {inline(figure.missing)}.</p>']
     return [f"<h3>{inline(figure.title)}</h3>", f'<p class="soft">{inline(figure.note)}</p>' if figure.note else "",
             f'<div class="items">{"".join(items)}</div>']
 
@@ -97,11 +99,10 @@ def html_navigation(all_sections):
     return "<nav>" + "".join(links + ['<a href="#figures">Figures</a>', '<a href="#run">How it was run</a>']) + "</nav>"
 
 
-def page_body(all_sections, said, introduction, text, warning, failures, pictures):
+def page_body(all_sections, said, introduction, text, warnings, failures, pictures):
     body = ["<h1>Cur-PPF: the paper's experiments, run again</h1>", f"<p>{inline(introduction)}</p>",
             html_navigation(all_sections)]
-    if warning:
-        body.append(f'<p class="warning">{inline(warning.lstrip("> ").strip())}</p>')
+    body += [f'<p class="warning">{inline(warning.lstrip("> ").strip())}</p>' for warning in warnings]
     if said:
         body.append('<div class="card"><ul class="said">' + "".join(f"<li>{inline(s)}</li>" for s in said) +
                     "</ul></div>")

@@ -5,7 +5,6 @@
 calls this; what is finished stays in OUT/cells and is not run again."""
 import argparse
 import concurrent.futures
-import hashlib
 import json
 import os
 import pathlib
@@ -20,7 +19,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 
 import cells  # noqa: E402
 import machine  # noqa: E402
+import picking  # noqa: E402
 import report  # noqa: E402
+import stamps  # noqa: E402
 
 TABLES = ("retrieval", "laser", "bins", "real", "ablations")
 
@@ -35,42 +36,61 @@ class Runner:
         self.simulating = {}  # folder: lock
         self.finished = 0
         self.begin = time.monotonic()
+        self.about = {"code": options.code, "version": options.version, "processor": machine.processor_name(),
+                      "processors": os.cpu_count(), "jobs": options.jobs, "load": machine.load_average(),
+                      "others_busy": None}
+        self.made = {}  # name of a cell that this run has finished: its stamp
 
     def simulated(self, simulate):
-        """A virtual bin, made once; cells that need the same one wait for it."""
+        """A virtual bin, made once for this code; cells that need the same one wait for it."""
         part, count, seed, values = simulate
         key = "_".join([pathlib.Path(part).name, str(count), str(seed), *values]).replace("/", "-")
         folder = self.out / "bins" / key
+        stamp = folder.with_name(f"{key}.done")
+        origin = f"{stamps.content(part)} {self.options.code}"
         with self.lock:
             lock = self.simulating.setdefault(key, threading.Lock())
         with lock:
-            if not (folder / "truth.json").exists():
+            if not (stamp.exists() and stamp.read_text(encoding="utf-8") == origin):
+                if stamp.exists():
+                    stamp.unlink()
+                shutil.rmtree(folder, ignore_errors=True)
                 folder.parent.mkdir(parents=True, exist_ok=True)
                 command = [self.options.program, "simulate", part, "--count", str(count), "--seed", str(seed),
                            "--threads", "1", "-o", str(folder)]
                 execute(command + (["--set", *values] if values else []))
+                stamp.write_text(origin, encoding="utf-8")
         return str(folder)
 
     def run(self, cell, total):
         result = self.out / "cells" / f"{cell.name}.json"
-        specification = dict(cell.specification)
-        text = json.dumps(specification, sort_keys=True) + self.options.code
-        digest = hashlib.sha256(text.encode()).hexdigest()
-        stamp = result.with_suffix(".done")
         begin = time.monotonic()
         note = "kept"
-        if not (result.exists() and stamp.exists() and stamp.read_text(encoding="utf-8") == digest):
+        digest = stamps.digest(cell)
+        stamp = stamps.read(self.out, cell.name)
+        if not result.exists() or stamp.get("specification") != digest or stamp.get("code") != self.options.code:
+            if stamp:  # or the old stamp would stand beside a new result, were this run broken off
+                stamps.file_of(self.out, cell.name).unlink()
+            specification = dict(cell.specification)
             if "simulate" in specification:
                 specification["dataset"] = self.simulated(specification.pop("simulate"))
             file = result.with_suffix(".specification")
             file.write_text(json.dumps(specification, indent=1), encoding="utf-8")
             execute([self.options.experiment, str(file), str(result)])
-            stamp.write_text(digest, encoding="utf-8")
+            stamp = {**self.about, "specification": digest, "finished": time.time()}
+            stamps.write(self.out, cell.name, stamp)
             note = f"{time.monotonic() - begin:.0f} s"
+            with self.lock:
+                self.made[cell.name] = stamp
         with self.lock:
             self.finished += 1
             print(f"paper: {self.finished} of {total}: {cell.title}: {note}"
                   f" ({(time.monotonic() - self.begin) / 60:.1f} min)", file=sys.stderr, flush=True)
+
+    def note_others(self, seconds):
+        """How many processors others kept busy is known only at the end."""
+        for name, stamp in self.made.items():
+            stamps.write(self.out, name, {**stamp, "others_busy": seconds})
 
     def run_all(self, plan):
         """Names of the cells that failed, with the reason."""
@@ -110,7 +130,8 @@ def parse():
     parser.add_argument("--parts", nargs="+", default=[], help="only these of the data set")
     parser.add_argument("--config", default="", metavar="FILE", help="constants for the own parts (default:"
                         " config/paper/three_way_tube.yaml)")
-    parser.add_argument("--picking", default="", metavar="FILE", help="report.json of the picking benchmark, Table 8")
+    parser.add_argument("--picking", nargs="+", action="extend", default=[], metavar="FILE", help="for Table 8: what"
+                        " benchmark_picking --json has written, one file or several")
     parser.add_argument("-j", dest="jobs", type=int, default=max(1, (os.cpu_count() or 2)), metavar="N",
                         help="experiments at once, each on one thread (default: all processors)")
     parser.add_argument("--write", metavar="FILE", default="", help="also write the Markdown report there")
@@ -123,17 +144,10 @@ def parse():
     return parser.parse_args()
 
 
-def note_machine(out, version, load, others):
-    """What the figures were taken on; the worst of all runs that went into them."""
-    file = out / "machine.json"
-    before = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
-    about = {"processor": machine.processor_name(), "processors": os.cpu_count(), "version": version,
-             "load": max(load, before.get("load", 0)), "others_busy": max(others, before.get("others_busy", 0))}
-    file.write_text(json.dumps(about, indent=1), encoding="utf-8")
-
-
 def main():
     options = parse()
+    options.config = options.config and str(pathlib.Path(options.config).resolve())
+    picking.read(options.picking)  # a wrong file is told before anything has run
     out = pathlib.Path(options.out)
     for folder in ("cells", "pictures", "models"):
         (out / folder).mkdir(parents=True, exist_ok=True)
@@ -142,14 +156,14 @@ def main():
         print(f"paper: {missing.group} cannot be run: {missing.reason}", file=sys.stderr)
     failures = {}
     if not options.report_only:
-        load, begin, busy = machine.load_average(), time.monotonic(), machine.busy_seconds_now()
-        own = sum(os.times()[:4])
-        failures = Runner(options, out).run_all(plan)
+        begin, busy, own = time.monotonic(), machine.busy_seconds_now(), sum(os.times()[:4])
+        runner = Runner(options, out)
+        failures = runner.run_all(plan)
         if not failures and not options.cells:
             shutil.rmtree(out / "models")  # gigabytes, of use only while experiments share them
         seconds = max(1e-3, time.monotonic() - begin)
         others = (machine.busy_seconds_now() - busy - (sum(os.times()[:4]) - own)) / seconds
-        note_machine(out, options.version, load, others if seconds > 1 else 0)
+        runner.note_others(max(0.0, others) if seconds > 1 else 0.0)
     report.write(options, plan, out, failures)
     print(f"paper: {out / 'report.html'} and {out / 'report.md'}", file=sys.stderr)
     return 1 if failures else 0

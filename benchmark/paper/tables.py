@@ -21,6 +21,8 @@ class Table:
     notes: list = dataclasses.field(default_factory=list)
     missing: str = ""   # why it has no rows
     command: str = ""
+    cells: tuple = ()   # how the names begin of the experiments that it shows
+    origin: str = ""    # version, machine and load, filled in by the report
 
 
 def number(value, digits=1):
@@ -41,7 +43,12 @@ def average(values):
 
 
 def missing_of(plan, *groups):
-    return "; ".join(missing.reason for missing in plan.missing if missing.group in groups)
+    """Why experiments of these groups are not there."""
+    reasons = [missing.reason for missing in plan.missing if missing.group in groups]
+    if plan.options.only and not plan.options.dataset:
+        reasons += [f"{group} was not asked for (--only {' '.join(plan.options.only)})" for group in groups
+                    if group not in plan.options.only]
+    return "; ".join(dict.fromkeys(reasons))
 
 
 def holds_everywhere(ours, theirs):
@@ -61,9 +68,9 @@ def models(results, method, what, **equal):
 
 def retrieval_rates(results, plan):
     table = Table("Tables 1 and 3: matching rate on the Retrieval models, %", ["method"] +
-                  PUBLISHED["1"]["columns"], [], command="--only retrieval",
+                  PUBLISHED["1"]["columns"], [], command="--only retrieval", cells=("whole_",),
                   missing=missing_of(plan, "retrieval"))
-    rate = lambda runs: figures.rate(runs) if runs else math.nan
+    rate = figures.rate
     for row in ("PPF", "Cur-PPF (unweighted)", "Cur-PPF"):
         printed = published("3" if row == "Cur-PPF" else "1", row)
         table.rows.append(paper_row("3" if row == "Cur-PPF" else "1", row, 2))
@@ -74,13 +81,14 @@ def retrieval_rates(results, plan):
         table.rows.append([])
     trials = max((len(figures.runs_of([result], "PPF", noise=0.1)) for result in results.named("whole_")), default=0)
     table.notes.insert(0, f"Noise 0.1 of the mesh resolution, {trials} random motion(s) a model, no ICP, the strongest"
-                       " cluster; Lucy stands in for the statuette; every model is scaled to a diagonal of 250 mm.")
+                       " cluster; Lucy stands in for the statuette; every model is scaled to a diagonal of 250 mm. The"
+                       " rate is Equation 9 over the points that truly are the object's: the same for all methods.")
     return table
 
 
 def retrieval_times(results, plan):
     table = Table("Tables 2 and 4: time on the Retrieval models, ms a scene", ["method"] + PUBLISHED["2"]["columns"],
-                  [], command="--only retrieval", missing=missing_of(plan, "retrieval"))
+                  [], command="--only retrieval", cells=("whole_",), missing=missing_of(plan, "retrieval"))
     time = lambda runs: figures.mean([run["ms"] for run in runs])
     base = average(models(results, "PPF", time, noise=0.1))
     for row in ("PPF", "Cur-PPF (unweighted)", "Cur-PPF"):
@@ -106,8 +114,8 @@ def retrieval_details(results, plan):
     """What the matching rate does not tell."""
     table = Table("Behind Tables 1-4: all models together, by noise",
                   ["method", "noise", "rate, %", "right (ADD < 0.1 d), %", "worst ADD / d", "votes a pair",
-                   "votes, of PPF's", "time, of PPF's"], [], command="--only retrieval",
-                  missing=missing_of(plan, "retrieval"))
+                   "votes, of PPF's", "ms a scene", "time, of PPF's"], [], command="--only retrieval",
+                  cells=("whole_",), missing=missing_of(plan, "retrieval"))
     all_results = results.named("whole_")
     names = figures.methods_of(all_results[0]) if all_results else []
     for name in names:
@@ -118,6 +126,7 @@ def retrieval_details(results, plan):
                                number(max((run.get("add", 1) for run in runs), default=math.nan), 4),
                                number(figures.mean([run["votes"] / run["pairs"] for run in runs]), 1),
                                number(figures.ratios(runs, base, "votes"), 2),
+                               number(figures.mean([run["ms"] for run in runs]), 0),
                                number(figures.ratios(runs, base, "ms"), 2)])
         table.rows.append([])
     table.notes = ["Shares with (hits/scenes; 95 % interval). ADD: mean distance of corresponding points; d: diameter."]
@@ -129,19 +138,41 @@ def retrieval_details(results, plan):
     return table
 
 
+def by_model(results, plan):
+    """Every model and noise by itself."""
+    names = [name[len("whole_"):] for name in results.by_name if name.startswith("whole_")]
+    table = Table("Model by model, at a noise of " + ", ".join(map(str, cells.NOISES)) + " of the mesh resolution",
+                  ["method"] + names, [], command="--only retrieval", cells=("whole_",),
+                  missing=missing_of(plan, "retrieval"))
+    figures_told = [("rate, %", lambda runs: number(figures.rate(runs))),
+                    ("right", lambda runs: f"{figures.successes(runs).hits} of {len(runs)}"),
+                    ("mean ADD where a pose was found, % of d",
+                     lambda runs: number(100 * figures.mean([run.get("add") for run in runs]), 2)),
+                    ("votes, millions", lambda runs: number(figures.mean([run["votes"] for run in runs]) / 1e6, 2)),
+                    ("ms", lambda runs: number(figures.mean([run["ms"] for run in runs]), 0))]
+    whole = [results.get(f"whole_{name}") for name in names]
+    for method in figures.methods_of(whole[0]) if whole else []:
+        for what, told in figures_told:
+            table.rows.append([f"{method}: {what}"] + [" / ".join(
+                told(figures.runs_of([result], method, noise=noise)) for noise in cells.NOISES) for result in whole])
+        table.rows.append([])
+    return table
+
+
 def partial(results, plan):
     table = Table("Where the paper does not look: one view, and one view in clutter",
-                  ["method", "view: rate, %", "view: right, %", "clutter: rate, %", "clutter: right, %",
-                   "clutter: votes, of PPF's", "clutter: time, of PPF's"], [], command="--only retrieval",
-                  missing=missing_of(plan, "retrieval"))
+                  ["method", "view: rate, %", "view: right, %", "view: votes, of PPF's", "view: time, of PPF's",
+                   "clutter: rate, %", "clutter: right, %", "clutter: votes, of PPF's", "clutter: time, of PPF's",
+                   "clutter: ms"], [], command="--only retrieval",
+                  cells=("view_", "clutter_"), missing=missing_of(plan, "retrieval"))
     views, clutter = results.named("view_"), results.named("clutter_")
     for name in figures.methods_of((views + clutter)[0]) if views + clutter else []:
         seen, hidden = figures.runs_of(views, name), figures.runs_of(clutter, name)
-        base = figures.runs_of(clutter, "PPF")
-        table.rows.append([name, number(figures.rate(seen)), figures.successes(seen).text(),
-                           number(figures.rate(hidden)), figures.successes(hidden).text(),
-                           number(figures.ratios(hidden, base, "votes"), 2),
-                           number(figures.ratios(hidden, base, "ms"), 2)])
+        row = [name]
+        for runs, base in ((seen, figures.runs_of(views, "PPF")), (hidden, figures.runs_of(clutter, "PPF"))):
+            row += [number(figures.rate(runs)), figures.successes(runs).text(),
+                    number(figures.ratios(runs, base, "votes"), 2), number(figures.ratios(runs, base, "ms"), 2)]
+        table.rows.append(row + [number(figures.mean([run["ms"] for run in hidden]), 0)])
     table.notes = ["The six models of Tables 1-4, noise 0.1, the strongest cluster, no ICP. Clutter: four other models"
                    " around and before the searched one. The rate is Equation 9 over the points that truly are the"
                    " object's, so that no method chooses its own denominator."]
@@ -152,7 +183,8 @@ def occlusion(results, plan):
     steps = [(0, 0.25), (0.25, 0.5), (0.5, 0.75), (0.75, 0.9), (0.9, 1.01)]
     table = Table("Recognition against occlusion: right poses in clutter, %, by how much of the visible side is seen",
                   ["method"] + [f"{100 * low:.0f}-{min(100, 100 * high):.0f} %" for low, high in steps], [],
-                  command="--only retrieval laser", missing=missing_of(plan, "retrieval"))
+                  command="--only retrieval laser", cells=("clutter_", "laser_"),
+                  missing=missing_of(plan, "retrieval", "laser"))
     for start, label in (("clutter_", ""), ("laser_", "Table 5: ")):
         clutter = [result for result in results.named(start) if isinstance(result["specification"]["scene"], str)]
         for name in figures.methods_of(clutter[0]) if clutter else []:
@@ -168,7 +200,7 @@ def laser(results, plan):
     table = Table("Table 5: several different objects in one scene, matching rate, %",
                   ["method"] + [name for name, _ in cells.LASER] + ["Average", "rs1 (real scan)", "right, %",
                                                                    "rs1: off by"], [],
-                  command="--only laser", missing=missing_of(plan, "laser"))
+                  command="--only laser", cells=("laser_",), missing=missing_of(plan, "laser"))
     results_of = {name: results.get(f"laser_{name}") for name, _ in cells.LASER}
     there = [result for result in results_of.values() if result]
     scan = results.get("laser_rs1")

@@ -6,6 +6,8 @@ Usage: paper_test.py BIN_PICKING BENCHMARK_PAPER"""
 import json
 import math
 import pathlib
+import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -18,6 +20,8 @@ sys.path[:0] = [str(BENCHMARK), str(BENCHMARK / "paper")]
 
 import cells  # noqa: E402
 import figures  # noqa: E402
+import gains  # noqa: E402
+import picking  # noqa: E402
 import summary  # noqa: E402
 import tables  # noqa: E402
 
@@ -61,11 +65,219 @@ class Arithmetic(unittest.TestCase):
         self.assertAlmostEqual(low, 0.839, places=3)
         self.assertAlmostEqual(high, 1.0)
 
+    def test_equal_rates_are_no_gain_and_no_loss(self):
+        self.assertEqual([summary.raises(90.0, after) for after in (95.0, 90.5, 85.0, math.nan)],
+                         [True, "no difference seen", False, None])
+
+    def test_a_share_is_told_as_a_factor_in_its_direction(self):
+        self.assertEqual([gains.factor(share) for share in (0.5, 2.0, math.nan)], ["2.0x less", "2.0x more", "-"])
+
+    def test_more_is_right_only_if_the_intervals_do_not_meet(self):
+        self.assertEqual(gains.compared(figures.Share(100, 100), figures.Share(50, 100)), "more")
+        self.assertEqual(gains.compared(figures.Share(2, 2), figures.Share(1, 2)), "no difference seen")
+        self.assertIsNone(summary.better(figures.Share(0, 0), figures.Share(1, 2)))
+
     def test_nothing_run_is_no_claim(self):
         plan = types.SimpleNamespace(cells=[])
         results = figures.Results(plan, pathlib.Path("nowhere"))
         self.assertEqual({claim.held for claim in summary.claims(results)}, {None})
-        self.assertEqual(summary.headline(results), [])
+        self.assertEqual(gains.headline(results), [])
+        self.assertEqual(gains.table(results).rows, [])
+
+
+def attempt(outcome, cause, called_free=False):
+    """As benchmark/picking/json_report.cpp writes it; no number where nothing was meant."""
+    return {"cloud": 1, "part": "three_way_tube", "grasp": "wall", "tilt": 0.1, "clearance": 0.004,
+            "matching_rate": 0.97, "score": 0.9, "center_error": None, "rotation_error": None, "outcome": outcome,
+            "cause": cause, "id": 3, "final_opening": 0.03, "offset": 0.001, "body": "",
+            "obstacle": "", "depth": 0.0, "called_free": called_free, "what": "the part is held"}
+
+
+def emptied(seed, attempts, shakes=1, left=0):
+    return {"seed": seed, "filled": sum(a["outcome"] == "taken" for a in attempts) + left, "shakes": shakes,
+            "left": {"not_detected": left} if left else {}, "attempts": attempts,
+            "seconds": {"detection": [0.1], "grasps": [0.02], "judge": [0.01]}}
+
+
+def picking_report(bins, part="three_way_tube", seeds="1..2", options=(), truth=False):
+    return {"command": ["benchmark_picking", f"config/parts/{part}", "--gripper", "config/grippers/ag95.yaml",
+                        "--seeds", seeds, "--json", "picks.json", *options],
+            "sensor": "structured_light", "gripper": "ag95", "truth": truth, "parts": [{"name": part, "bins": bins}]}
+
+
+TAKEN = attempt("taken", "taken")
+HIT = attempt("collision", "approach: gripper against part", True)
+MISSED = attempt("missed", "missed")
+
+
+class Picking(unittest.TestCase):
+    """Table 8."""
+
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temporary.cleanup)
+
+    def file(self, report, name="picks.json"):
+        path = pathlib.Path(self.temporary.name) / name
+        path.write_text(report if isinstance(report, str) else json.dumps(report), encoding="utf-8")
+        return str(path)
+
+    def table(self, *files):
+        return picking.table(picking.read(files), files, str(PACKAGE))
+
+    def assert_wrong(self, words, *reports):
+        files = [self.file(report, f"{k}.json") for k, report in enumerate(reports)]
+        with self.assertRaises(ValueError) as caught:
+            picking.read(files)
+        self.assertIn(words, str(caught.exception))
+        return str(caught.exception)
+
+    def test_picks_failures_by_cause_shakes_and_collisions_called_free_are_counted(self):
+        table = self.table(self.file(picking_report([emptied(1, [TAKEN, HIT, TAKEN], shakes=2),
+                                                     emptied(2, [MISSED, HIT, TAKEN], shakes=3, left=4)])))
+        paper, ours = (dict(zip(table.columns, row)) for row in table.rows)
+        self.assertEqual((paper["picks"], paper["successes"]), ("100", "95"))
+        self.assertEqual((ours["bins"], ours["picks"], ours["successes"], ours["failures"]), ("2", "6", "3", "3"))
+        self.assertEqual(ours["success, % (95 % interval)"], figures.Share(3, 6).text())
+        self.assertEqual(ours["failures by cause"], "2 x approach: gripper against part; 1 x missed")
+        self.assertEqual((ours["collisions called free"], ours["shakes"], ours["parts left"]), ("2", "5", "4"))
+        self.assertTrue(any(note.startswith("`benchmark_picking config/parts/three_way_tube") for note in table.notes))
+
+    def test_files_of_other_seeds_are_one_row_and_other_parts_or_settings_are_not(self):
+        files = [self.file(picking_report([emptied(1, [TAKEN])], seeds="1"), "a.json"),
+                 self.file(picking_report([emptied(2, [TAKEN])], seeds="2"), "b.json"),
+                 self.file(picking_report([emptied(1, [MISSED])], "hex_bolt"), "c.json"),
+                 self.file(picking_report([emptied(1, [HIT])], options=["--preset", "paper"]), "d.json"),
+                 self.file(picking_report([emptied(1, [HIT])], options=["--truth"], truth=True), "e.json")]
+        rows = picking.read(files)
+        self.assertEqual([(row.part, len(row.attempts())) for row in rows],
+                         [("three_way_tube", 2), ("three_way_tube", 1), ("three_way_tube", 1), ("hex_bolt", 1)])
+        self.assertEqual(picking.of_the_paper(rows)[0].total, 3)
+
+    def test_a_bin_given_twice_is_refused(self):
+        report = picking_report([emptied(1, [TAKEN])])
+        self.assert_wrong("would count twice", report, report)
+
+    def test_a_wrong_file_is_told_with_what_is_missing_and_the_cure(self):
+        cure = "--gripper FILE.yaml --json FILE"
+        self.assertIn(cure, self.assert_wrong("no 'command'", {"attempts": 100, "successes": 95}))
+        self.assertIn(cure, self.assert_wrong("is not JSON", "# Picking in the virtual cell"))
+        without = picking_report([emptied(1, [TAKEN])])
+        del without["parts"][0]["bins"][0]["shakes"]
+        self.assertIn(cure, self.assert_wrong("no 'shakes' in parts[0].bins[0]", without))
+        self.assert_wrong("parts[0].bins[0].attempts[0] of", picking_report([emptied(1, [attempt("dropped", "?")])]))
+        with self.assertRaisesRegex(ValueError, "cannot be read"):
+            picking.read(["/nowhere/picks.json"])
+
+    def test_the_keys_are_those_that_the_benchmark_writes(self):
+        writer = (BENCHMARK / "picking/json_report.cpp").read_text(encoding="utf-8")
+        written = set(re.findall(r'\{"(\w+)",', writer))
+        report = picking_report([emptied(1, [TAKEN])])
+        part = report["parts"][0]
+        for node in (report, part, part["bins"][0], part["bins"][0]["attempts"][0], part["bins"][0]["seconds"]):
+            self.assertEqual(set(node) - written, set())
+        self.assertEqual(written - set(report) - set(part) - set(part["bins"][0]) - set(TAKEN) -
+                         set(part["bins"][0]["seconds"]), set())
+        words = (PACKAGE / "src/simulation/grip_trial_parameters.cpp").read_text(encoding="utf-8")
+        text = words[words.index("toString(GripVerdict::Outcome"):words.index("toString(GripStage")]
+        self.assertEqual(set(re.findall(r'return "(\w+)"', text)) - {"unknown"}, set(picking.OUTCOMES))
+
+    def test_the_claim_is_held_against_the_interval(self):
+        plan = types.SimpleNamespace(cells=[])
+
+        def verdict(hits, misses):
+            rows = picking.read([self.file(picking_report([emptied(1, [TAKEN] * hits + [MISSED] * misses)]))])
+            return summary.picking_claims(figures.Results(plan, pathlib.Path("nowhere"), rows))[0].held
+        self.assertEqual(verdict(400, 0), True)
+        self.assertEqual(verdict(10, 0), "cannot be told")
+        self.assertEqual(verdict(50, 50), False)
+
+
+STUB = """#!/usr/bin/env python3
+import json, pathlib, sys
+specification = json.loads(pathlib.Path(sys.argv[1]).read_text())
+pose = {"rate": 0.97, "verdict": "right", "translation": 0.001, "rotation": 0.01}
+runs = [{"method": m, "scene": "one", "ms": 10.0, "votes": 100.0, "pairs": 10, "detections": [pose], "instances": []}
+        for m in range(len(specification["methods"]))]
+result = {"models": [], "runs": runs, "scenes": 1, "specification": specification}
+pathlib.Path(sys.argv[2]).write_text(json.dumps(result))
+"""
+
+
+class Mixing(unittest.TestCase):
+    """Results of other code, data or options are made anew or left out, with a stand-in for the program."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        self.out = self.folder / "out"
+        self.experiment = self.folder / "experiment"
+        self.experiment.write_text(STUB, encoding="utf-8")
+        self.experiment.chmod(0o755)
+        for scene in ("one", "two"):
+            (self.folder / "set" / scene).mkdir(parents=True)
+            (self.folder / "set" / scene / "scene.pcd").write_text(scene, encoding="utf-8")
+        self.config = self.folder / "constants.yaml"
+        shutil.copy(PACKAGE / "config/paper/three_way_tube.yaml", self.config)
+
+    def run_paper(self, *arguments, code="first"):
+        outcome = subprocess.run(
+            [sys.executable, str(BENCHMARK / "paper" / "run.py"), "--program", "none", "--experiment",
+             str(self.experiment), "--package", str(PACKAGE), "-o", str(self.out), "--dataset",
+             str(self.folder / "set"), "--config", str(self.config), "-j", "1", "--code", code, "--version",
+             f"version-{code}", *arguments],
+            check=False, capture_output=True, text=True)
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+        return outcome.stderr, (self.out / "report.md").read_text(encoding="utf-8")
+
+    def test_what_is_finished_is_kept(self):
+        self.run_paper()
+        said, _ = self.run_paper()
+        self.assertEqual(said.count(": kept"), 2)
+
+    def test_every_table_names_command_version_machine_and_load(self):
+        _, page = self.run_paper()
+        for line in ("benchmark/paper.sh --dataset DIR", "version version-first", "load before it"):
+            self.assertEqual(page.count(line) >= 3, True, line)
+
+    def test_other_code_runs_all_again(self):
+        self.run_paper()
+        said, page = self.run_paper(code="second")
+        self.assertNotIn(": kept", said)
+        self.assertNotIn("version-first", page)
+
+    def test_other_constants_or_clouds_run_again_what_they_concern(self):
+        self.run_paper()
+        (self.folder / "set/one/scene.pcd").write_text("another cloud", encoding="utf-8")
+        said, _ = self.run_paper()
+        self.assertEqual(said.count(": kept"), 1)
+        with self.config.open("a", encoding="utf-8") as file:
+            file.write("# another file\n")
+        said, _ = self.run_paper()
+        self.assertEqual(said.count(": kept"), 0)
+
+    def test_a_report_of_what_is_there_leaves_out_other_code_and_says_so(self):
+        self.run_paper()
+        self.run_paper("--cells", "own_one", code="second")
+        _, page = self.run_paper("--report-only", code="second")
+        self.assertIn("1 results in this folder are left out", page)
+        self.assertIn("own_two", page)
+        self.assertNotIn("version-first", page)
+
+    def test_a_report_only_of_unknown_code_shows_one_code(self):
+        self.run_paper()
+        _, page = self.run_paper("--report-only", code="third")
+        self.assertIn("version-first", page)
+        self.assertNotIn("left out", page)
+
+    def test_a_result_without_its_stamp_is_not_finished(self):
+        self.run_paper()
+        (self.out / "cells/own_one.done").unlink()
+        _, page = self.run_paper("--report-only")
+        self.assertIn("own_one", page[page.index("left out"):])
+        said, _ = self.run_paper()
+        self.assertEqual(said.count(": kept"), 1)
 
 
 class SmallRun(unittest.TestCase):
@@ -115,6 +327,7 @@ class SmallRun(unittest.TestCase):
         self.assertIn("uwa/parasaurolophus_low_normals2.ply", outcome.stderr)
         report = (self.folder / "out" / "report.md").read_text(encoding="utf-8")
         self.assertIn("uwa/parasaurolophus_low_normals2.ply", report)
+        self.assertIn("bins was not asked for (--only laser)", report)
 
 
 class Cells(unittest.TestCase):
