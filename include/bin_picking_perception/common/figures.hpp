@@ -6,7 +6,7 @@
 
 namespace bin_picking
 {
-/// Rounded to so many digits behind the point (0 to 17), whatever the locale: "12.30". Takes a fraction of a
+/// Rounded to so many digits behind the point (0 to 9), whatever the locale: "12.30". Takes a fraction of a
 /// microsecond, since thousands of sentences are written for a cloud. Not finite: "nan", "inf", "-inf".
 std::string roundedText(double value, int digits);
 

@@ -123,14 +123,12 @@ Refusal checkDetection(std::size_t index, const GraspSurroundings& s)
   return {why.empty() ? GraspRejection::None : GraspRejection::Avoided, why};
 }
 
-bool checkTilt(Grasp& grasp, const GraspSurroundings& s)
+Refusal steepness(double tilt, const GraspSurroundings& s)
 {
-  if (grasp.tilt <= s.setup.parameters.max_tilt)
-    return true;
   const char* reference = s.scene.bin ? "straight down into the bin" : "the view direction of the camera";
-  return reject(grasp, GraspRejection::TiltTooLarge,
-                "The approach is tilted by " + degrees(grasp.tilt) + " against " + reference + ", at most " +
-                    degrees(s.setup.parameters.max_tilt) + " are allowed (max_tilt).");
+  return {GraspRejection::TiltTooLarge, "The approach is tilted by " + degrees(tilt) + " against " + reference +
+                                            ", at most " + degrees(s.setup.parameters.max_tilt) +
+                                            " are allowed (max_tilt)."};
 }
 
 bool checkGripper(Grasp& grasp, const PreparedGrasp& prepared, const Eigen::Vector3d& out_camera,
