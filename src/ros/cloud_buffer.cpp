@@ -26,10 +26,11 @@ std::uint64_t CloudBuffer::numReceived() const
   return num_received_;
 }
 
-sensor_msgs::PointCloud2ConstPtr CloudBuffer::waitForStamp(const ros::Time& earliest, Clock::time_point until) const
+sensor_msgs::PointCloud2ConstPtr CloudBuffer::waitForStamp(const ros::Time& earliest, std::uint64_t num_seen,
+                                                           Clock::time_point until) const
 {
   std::unique_lock<std::mutex> lock(mutex_);
-  const auto arrived = [&] { return latest_ && latest_->header.stamp >= earliest; };
+  const auto arrived = [&] { return latest_ && num_received_ > num_seen && latest_->header.stamp >= earliest; };
   changed_.wait_until(lock, until, [&] { return closed_ || arrived(); });
   return !closed_ && arrived() ? latest_ : nullptr;
 }

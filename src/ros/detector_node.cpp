@@ -42,13 +42,22 @@ std::optional<bin_picking::Robot> loadOptionalRobot(const std::string& file)
 
 struct DetectorNode::Job
 {
-  explicit Job(double deadline_seconds) : deadline(deadline_seconds) {}
+  Job(const CloudBuffer& clouds, double deadline_seconds) : num_seen(clouds.numReceived()), deadline(deadline_seconds)
+  {}
+
+  /// Every cloud comes in here, whoever asked for it. \throws RequestError STALE_CLOUD: its stamp is not credible
+  void take(PointCloud2ConstPtr taken)
+  {
+    cloud = std::move(taken);
+    requireCredibleStamp(cloud->header.stamp, ros::Time::now());
+  }
 
   double elapsed() const { return std::chrono::duration<double>(CloudBuffer::Clock::now() - start).count(); }
 
   ros::Time called = ros::Time::now();
   CloudBuffer::Clock::time_point start = CloudBuffer::Clock::now();
-  double deadline;  ///< seconds from the start; 0: none
+  std::uint64_t num_seen;  ///< clouds that had come by then
+  double deadline;         ///< seconds from the start; 0: none
   PointCloud2ConstPtr cloud;
 };
 
@@ -136,7 +145,7 @@ std::shared_ptr<const PickPipeline> DetectorNode::readyPipeline() const
 
 bool DetectorNode::handleRequest(Request& request, Response& response)
 {
-  Job job(request.deadline > ros::Duration(0) ? request.deadline.toSec() : parameters_.deadline);
+  Job job(clouds_, request.deadline > ros::Duration(0) ? request.deadline.toSec() : parameters_.deadline);
   try
   {
     response = answer(request, job);
@@ -145,7 +154,7 @@ bool DetectorNode::handleRequest(Request& request, Response& response)
   {
     response = fail(translateException(std::current_exception()), job);
   }
-  if (job.cloud)
+  if (job.cloud && !job.cloud->header.stamp.isZero())
     response.age = durationBetween(job.cloud->header.stamp, ros::Time::now());
   return true;  // false would reach the caller without any data
 }
@@ -156,7 +165,7 @@ DetectorNode::Response DetectorNode::answer(const Request& request, Job& job)
   grippers_.find(request.gripper);
   const std::shared_ptr<const PickPipeline> pipeline = readyPipeline();
   pipeline->requireParts(request.part_ids);
-  job.cloud = acquire(request, job);
+  job.take(acquire(request, job));
   const OutputFrame output = frames_.output(job.cloud->header, request.output_frame);
 
   PickRequest pick;
@@ -172,7 +181,7 @@ DetectorNode::Response DetectorNode::answer(const Request& request, Job& job)
 
 PointCloud2ConstPtr DetectorNode::acquire(const Request& request, const Job& job) const
 {
-  CloudWish wish{job.called, job.start, 0, cloud_subscriber_.getTopic()};
+  CloudWish wish{job.called, job.start, job.num_seen, 0, cloud_subscriber_.getTopic()};
   if (request.acquisition == Request::WAIT_NEW)
   {
     wish.seconds = job.deadline > 0 ? std::min(job.deadline, parameters_.cloud_timeout) : parameters_.cloud_timeout;
@@ -234,10 +243,10 @@ void DetectorNode::processContinuously()
   std::uint64_t num_seen = clouds_.numReceived();
   while (const PointCloud2ConstPtr cloud = clouds_.waitForNext(num_seen))
   {
-    Job job(parameters_.deadline);
-    job.cloud = cloud;
+    Job job(clouds_, parameters_.deadline);
     try
     {
+      job.take(cloud);
       const std::shared_ptr<const PickPipeline> pipeline = readyPipeline();
       process(*pipeline, PickRequest(), frames_.output(cloud->header, ""), job, PickMemory::Channel::Topic);
     }
