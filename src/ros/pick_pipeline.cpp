@@ -56,6 +56,8 @@ ReturnCode judge(const DetectionResult& detection, const GraspSelection& selecti
       return makeReturnCode(ReturnCode::BIN_EMPTY, detection.message);
     case DetectionCode::NoMatch:
       return makeReturnCode(ReturnCode::NO_MATCH, detection.message);
+    case DetectionCode::BinUnseen:
+      return makeReturnCode(ReturnCode::BAD_CLOUD, detection.message);
     case DetectionCode::Ok:
       break;
   }
