@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "bin_picking_perception/common/error.hpp"
@@ -54,11 +55,37 @@ struct DetectorNode::Job
 
   double elapsed() const { return std::chrono::duration<double>(CloudBuffer::Clock::now() - start).count(); }
 
+  /// Seconds until the deadline.
+  double left() const
+  {
+    return deadline > 0 ? std::max(0.0, deadline - elapsed()) : std::numeric_limits<double>::infinity();
+  }
+
   ros::Time called = ros::Time::now();
   CloudBuffer::Clock::time_point start = CloudBuffer::Clock::now();
   std::uint64_t num_seen;  ///< clouds that had come by then
   double deadline;         ///< seconds from the start; 0: none
   PointCloud2ConstPtr cloud;
+  bool is_for_all = false;     ///< nobody has asked: the topics are what it is done for
+  bool has_own_frame = false;  ///< of the answer
+
+  /// Whether an answer to anybody would have failed by this, so that no older result may stand on the topics.
+  bool isFaultForAll(const ReturnCode& code) const
+  {
+    switch (code.value)
+    {
+      case ReturnCode::BAD_CLOUD:
+      case ReturnCode::UNIT_SUSPECT:
+      case ReturnCode::STALE_CLOUD:  // with a cloud that was taken: its stamp, not the wishes of the request
+        return true;
+      case ReturnCode::TF_UNKNOWN_FRAME:
+      case ReturnCode::TF_DISCONNECTED:
+      case ReturnCode::BAD_TRANSFORM:
+        return is_for_all || (!has_own_frame && left() > 0);  // a deadline cuts the waiting for tf
+      default:
+        return is_for_all;
+    }
+  }
 };
 
 DetectorNode::DetectorNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
@@ -146,6 +173,7 @@ std::shared_ptr<const PickPipeline> DetectorNode::readyPipeline() const
 bool DetectorNode::handleRequest(Request& request, Response& response)
 {
   Job job(clouds_, request.deadline > ros::Duration(0) ? request.deadline.toSec() : parameters_.deadline);
+  job.has_own_frame = !request.output_frame.empty();
   try
   {
     response = answer(request, job);
@@ -219,7 +247,9 @@ PickResult DetectorNode::process(const PickPipeline& pipeline, PickRequest pick,
   PickResult result = pipeline.run(*job.cloud, pick);
   result.avoided = placesInCamera(memory_, T_fixed_camera);
   memory_.remember(nameGrasps(result, memory_.nextAnswer(), T_fixed_camera), channel);
-  publisher_.publish(result, output);
+  // Nothing that is ready by one's own deadline is no news for others.
+  if (job.is_for_all || result.code.value != ReturnCode::DEADLINE)
+    publisher_.publish(result, output);
   diagnostics_->note(result.code, result.detection.timing, result.detection.total_seconds);
   return result;
 }
@@ -232,7 +262,8 @@ DetectorNode::Response DetectorNode::fail(const ReturnCode& code, const Job& job
   if (job.cloud)
   {
     response.header = job.cloud->header;
-    publisher_.publishFailure(code, job.cloud->header);
+    if (job.isFaultForAll(code))
+      publisher_.publishFailure(code, job.cloud->header);
   }
   diagnostics_->note(code, {}, job.elapsed());
   return response;
@@ -244,6 +275,7 @@ void DetectorNode::processContinuously()
   while (const PointCloud2ConstPtr cloud = clouds_.waitForNext(num_seen))
   {
     Job job(clouds_, parameters_.deadline);
+    job.is_for_all = true;
     try
     {
       job.take(cloud);

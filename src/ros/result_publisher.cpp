@@ -31,6 +31,7 @@ void ResultPublisher::setMarkerMaker(std::shared_ptr<const MarkerMaker> marker_m
 void ResultPublisher::publish(const PickResult& result, const OutputFrame& output)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
+  last_result_ = output.header.stamp;
   poses_.publish(toPoseArray(result, output));
   detections_.publish(toDetectionArray(result, output));
   grasps_.publish(toGraspArray(result, output));
@@ -44,6 +45,8 @@ void ResultPublisher::publish(const PickResult& result, const OutputFrame& outpu
 void ResultPublisher::publishFailure(const ReturnCode& code, const std_msgs::Header& header)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (!header.stamp.isZero() && header.stamp < last_result_)  // without a time, nobody knows which is newer
+    return;
   geometry_msgs::PoseArray poses;
   poses.header = header;
   poses_.publish(poses);

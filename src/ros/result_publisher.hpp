@@ -29,7 +29,8 @@ public:
 
   void publish(const PickResult& result, const OutputFrame& output);
 
-  /// Replaces the latched results by empty ones with the code: an old pose must not look like an answer.
+  /// Replaces the latched results by empty ones with the code: an old pose must not look like an answer. Nothing
+  /// happens where they are of a newer cloud.
   void publishFailure(const ReturnCode& code, const std_msgs::Header& header);
 
 private:
@@ -42,6 +43,7 @@ private:
   ros::Publisher markers_;
   ros::Publisher segmentation_;
   tf2_ros::TransformBroadcaster broadcaster_;
+  ros::Time last_result_;                        ///< stamp of the newest result
   std::map<std::string, ros::Time> last_stamp_;  ///< per tf frame
   std::shared_ptr<const MarkerMaker> marker_maker_;
   std::mutex mutex_;

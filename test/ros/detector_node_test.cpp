@@ -137,6 +137,25 @@ TEST_F(DetectorNodeTest, OtherFramesOnRequest)
   expectGoodAnswer();
 }
 
+TEST_F(DetectorNodeTest, OnesBadRequestDoesNotWipeOutWhatOthersSee)
+{
+  expectGoodAnswer();  // the camera stands still from here on
+  const auto shown = [] {
+    const auto detections = receive<bin_picking_perception::DetectionArray>("/cell/detector/detections");
+    return detections ? detections->code.name : "nothing is latched";
+  };
+  GetBestGrasp::Request request;
+  request.acquisition = GetBestGrasp::Request::USE_LATEST;
+  request.max_age = ros::Duration(PATIENCE);
+  request.output_frame = "base_lnk";
+  EXPECT_EQ(ask(request).code.value, ReturnCode::TF_UNKNOWN_FRAME);
+  EXPECT_EQ(shown(), "OK");
+  request.output_frame.clear();
+  request.deadline = ros::Duration(1e-6);
+  EXPECT_EQ(ask(request).code.value, ReturnCode::DEADLINE);
+  EXPECT_EQ(shown(), "OK");
+}
+
 TEST_F(DetectorNodeTest, RefusesRequestsThatMakeNoSense)
 {
   camera_->start(makeMessage(scene_->grid));
