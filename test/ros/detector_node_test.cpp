@@ -87,6 +87,29 @@ TEST_F(DetectorNodeTest, TopicsAndTfSayTheSameAsTheAnswer)
   EXPECT_GT(markers->markers.size(), 3u);
 }
 
+TEST_F(DetectorNodeTest, TheLatestTfIsThatOfTheLastAnswerOfOneCloud)
+{
+  tf2_ros::Buffer buffer;
+  tf2_ros::TransformListener listener(buffer, true);
+  expectGoodAnswer();  // the camera stands still from here on
+  GetBestGrasp::Request request;
+  request.acquisition = GetBestGrasp::Request::USE_LATEST;
+  request.max_age = ros::Duration(PATIENCE);
+  const auto parentAfter = [&](const std::string& frame) {
+    request.output_frame = frame;
+    std::string parent;
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(PATIENCE);
+    do  // the listener connects at its own pace
+      EXPECT_EQ(ask(request).code.value, ReturnCode::OK);
+    while (ros::WallDuration(0.1).sleep() && ros::WallTime::now() < end &&
+           !(buffer._getParent("cell_part_0", ros::Time(0), parent) && parent == frame));
+    return parent;
+  };
+  EXPECT_EQ(parentAfter("base_link"), "base_link");
+  EXPECT_EQ(parentAfter("camera"), "camera");
+  EXPECT_EQ(parentAfter("base_link"), "base_link");
+}
+
 TEST_F(DetectorNodeTest, SegmentationIsPublishedToSubscribers)
 {
   ros::NodeHandle nh;
