@@ -194,7 +194,7 @@ DetectorNode::Response DetectorNode::answer(const Request& request, Job& job)
   const std::shared_ptr<const PickPipeline> pipeline = readyPipeline();
   pipeline->requireParts(request.part_ids);
   job.take(acquire(request, job));
-  const OutputFrame output = frames_.output(job.cloud->header, request.output_frame);
+  const OutputFrame output = frames_.output(job.cloud->header, request.output_frame, job.left());
 
   PickRequest pick;
   pick.parts = request.part_ids;
@@ -236,13 +236,13 @@ Turns::Turn DetectorNode::waitForTurn(const Job& job)
 PickResult DetectorNode::process(const PickPipeline& pipeline, PickRequest pick, const OutputFrame& output,
                                  const Job& job, PickMemory::Channel channel)
 {
-  pick.bin = frames_.bin(job.cloud->header);
-  pick.T_base_camera = frames_.robotBase(job.cloud->header);
+  pick.bin = frames_.bin(job.cloud->header, job.left());
+  pick.T_base_camera = frames_.robotBase(job.cloud->header, job.left());
   const bin_picking::Pose T_fixed_camera = CellFrames::fixedFrame(pick.bin, pick.T_base_camera);
   const Turns::Turn turn = waitForTurn(job);
   pick.keep_segmentation = publisher_.wantsSegmentation();
   if (job.deadline > 0)
-    pick.deadline = std::max(job.deadline - job.elapsed(), 1e-9);  // 0 would be none
+    pick.deadline = std::max(job.left(), 1e-9);  // 0 would be none
   pick.avoided = avoidQuery(memory_, T_fixed_camera);
   PickResult result = pipeline.run(*job.cloud, pick);
   result.avoided = placesInCamera(memory_, T_fixed_camera);
@@ -280,7 +280,7 @@ void DetectorNode::processContinuously()
     {
       job.take(cloud);
       const std::shared_ptr<const PickPipeline> pipeline = readyPipeline();
-      process(*pipeline, PickRequest(), frames_.output(cloud->header, ""), job, PickMemory::Channel::Topic);
+      process(*pipeline, PickRequest(), frames_.output(cloud->header, "", job.left()), job, PickMemory::Channel::Topic);
     }
     catch (...)
     {

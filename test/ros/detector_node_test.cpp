@@ -173,6 +173,10 @@ TEST_F(DetectorNodeTest, OnesBadRequestDoesNotWipeOutWhatOthersSee)
   request.output_frame = "base_lnk";
   EXPECT_EQ(ask(request).code.value, ReturnCode::TF_UNKNOWN_FRAME);
   EXPECT_EQ(shown(), "OK");
+  request.deadline = ros::Duration(0.05);
+  const ros::WallTime start = ros::WallTime::now();
+  EXPECT_EQ(ask(request).code.value, ReturnCode::TF_UNKNOWN_FRAME);
+  EXPECT_LT((ros::WallTime::now() - start).toSec(), 0.4) << "tf is not waited for beyond the deadline, for tf_timeout";
   request.output_frame.clear();
   request.deadline = ros::Duration(1e-6);
   EXPECT_EQ(ask(request).code.value, ReturnCode::DEADLINE);
