@@ -10,6 +10,7 @@ void CloudBuffer::store(const sensor_msgs::PointCloud2ConstPtr& cloud)
     const std::lock_guard<std::mutex> lock(mutex_);
     latest_ = cloud;
     ++num_received_;
+    last_received_ = Clock::now();
   }
   changed_.notify_all();
 }
@@ -24,6 +25,12 @@ std::uint64_t CloudBuffer::numReceived() const
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   return num_received_;
+}
+
+CloudBuffer::Clock::time_point CloudBuffer::lastReceived() const
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return last_received_;
 }
 
 sensor_msgs::PointCloud2ConstPtr CloudBuffer::waitForStamp(const ros::Time& earliest, std::uint64_t num_seen,

@@ -39,6 +39,13 @@ std::optional<bin_picking::Robot> loadOptionalRobot(const std::string& file)
     return std::nullopt;
   return bin_picking::loadRobot(resolveResource(file));
 }
+
+/// Where clouds are exposed on demand, none comes as long as nobody asks.
+double maxSilence(const NodeParameters& parameters)
+{
+  return parameters.process == ProcessMode::Continuous ? parameters.cloud_timeout
+                                                       : std::numeric_limits<double>::infinity();
+}
 }  // namespace
 
 struct DetectorNode::Job
@@ -104,8 +111,8 @@ DetectorNode::DetectorNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
   loader_ = std::make_unique<ModelLoader>(
       ModelLoader::Job{parts_, parameters_.training, cache, parameters_.detector.num_threads},
       [this](const ModelLoader::Models& models) { setModels(models); });
-  diagnostics_ = std::make_unique<NodeDiagnostics>(nh_, private_nh, clouds_, *loader_,
-                                                   parameters_.detector.input.max_plausible_depth);
+  diagnostics_ = std::make_unique<NodeDiagnostics>(
+      nh_, private_nh, clouds_, *loader_, parameters_.detector.input.max_plausible_depth, maxSilence(parameters_));
   tuning_ = std::make_unique<Tuning>(private_nh, parameters_, [this](const NodeParameters& p) { retune(p); });
   cloud_subscriber_ = nh_.subscribe("points", 1, &CloudBuffer::store, &clouds_, ros::TransportHints().tcpNoDelay());
   reports_ = std::make_unique<ReportServices>(private_nh, memory_);
@@ -120,8 +127,8 @@ DetectorNode::~DetectorNode()
   clouds_.close();
   frames_.close();
   turns_.close();
+  service_spinner_->stop();  // before the service goes, and with it the connections: who waited is told why
   service_.shutdown();
-  service_spinner_->stop();
   if (continuous_thread_.joinable())
     continuous_thread_.join();
   tuning_.reset();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 // The detector from cloud to answer, within this process.
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <sensor_msgs/Image.h>
 #include <tf2_ros/transform_broadcaster.h>
 
@@ -219,6 +220,24 @@ TEST_F(DetectorNodeTest, OldCloudsAndPassedDeadlines)
   expectGoodAnswer();
 }
 
+TEST_F(DetectorNodeTest, DiagnosticsTellWhenTheLastCloudCame)
+{
+  const auto input = [] {
+    const auto message = receive<diagnostic_msgs::DiagnosticArray>("/diagnostics");
+    for (const auto& status : message->status)
+      if (status.name == "cell/detector: input cloud")
+        return status;
+    return diagnostic_msgs::DiagnosticStatus();
+  };
+  expectGoodAnswer();  // the camera stands still from here on
+  diagnostic_msgs::DiagnosticStatus status = input();
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(20);
+  while (status.message.find(" ago.") == std::string::npos && ros::WallTime::now() < end)
+    status = input();
+  EXPECT_EQ(status.message.rfind("The last cloud came ", 0), 0u) << status.name << status.message;
+  EXPECT_EQ(status.level, diagnostic_msgs::DiagnosticStatus::OK) << "it comes when somebody asks for it";
+}
+
 TEST_F(DetectorNodeTest, TuningChangesTheNextAnswer)
 {
   const auto set = [](double tilt) {
@@ -263,12 +282,14 @@ TEST_F(DetectorNodeTest, ContinuousProcessingAndEndWhileACallWaits)
   ros::ServiceClient client = private_nh.serviceClient<GetBestGrasp>("get_best_grasp");
   auto call = std::async(std::launch::async, [&client] {
     GetBestGrasp waiting;  // for a cloud that never comes
-    client.call(waiting);
+    EXPECT_TRUE(client.call(waiting)) << "the connection was cut before the answer";
     return waiting.response.code.value;
   });
+  ASSERT_EQ(call.wait_for(std::chrono::seconds(1)), std::future_status::timeout) << "the call does not wait";
   second.reset();
   ASSERT_EQ(call.wait_for(std::chrono::seconds(10)), std::future_status::ready)
       << "the end of the node hangs behind a call";
+  EXPECT_EQ(call.get(), ReturnCode::NOT_READY);
 }
 
 TEST_F(DetectorNodeTest, GraspsOfAPartWhoseTurnIsOpenAreForThoseWhoAcceptThem)
