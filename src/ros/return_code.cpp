@@ -17,7 +17,7 @@ struct CodeText
   const char* hint;
 };
 
-constexpr std::array<CodeText, 22> CODES = {{
+constexpr std::array<CodeText, 21> CODES = {{
     {ReturnCode::OK, "OK", ""},
     {ReturnCode::PARTIAL, "PARTIAL", "Allow a longer deadline, or choose the preset fast."},
     {ReturnCode::BIN_EMPTY, "BIN_EMPTY",
