@@ -23,7 +23,7 @@ double checkedSpeed(double speed)
 {
   if (!(speed > 0) || !std::isfinite(speed))
     throw bin_picking::ParameterError("the speed of the arm is " + std::to_string(speed) +
-                                      " rad/s, but it must be a positive number; set speed to 1 for about that of the "
+                                      " rad/s; it must be a positive number; set speed to 1 for about that of the "
                                       "robot, to more for faster");
   return speed;
 }
