@@ -11,4 +11,4 @@ scripts/build.sh
 export ROS_HOME="$PWD/$build_dir/ros_home"  # keeps ROS logs out of the home folder
 case "$build_dir" in /*) ROS_HOME="$build_dir/ros_home" ;; esac
 cd "$build_dir"
-exec ctest --output-on-failure "$@"
+exec ctest --output-on-failure -j "$(nproc)" "$@"
