@@ -196,6 +196,21 @@ TEST_F(ReachOfUr5e, refusesPosesThatAreNone)
   expectWords(messageOf<ParameterError>([&] { reach(kinematics_, request); }), {"waypoint 2", "not finite"});
 }
 
+// A step of 0 or backwards would look at the ends of the way only.
+TEST_F(ReachOfUr5e, refusesParametersOutOfTheirRange)
+{
+  const ReachRequest request = pick(downAt(robot_, 0.5, 0, 0.2));
+  for (const double step : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
+  {
+    ReachParameters parameters;
+    parameters.path_step = step;
+    expectWords(messageOf<ParameterError>([&] { reach(kinematics_, request, parameters); }), {"path_step"});
+  }
+  ReachParameters parameters;
+  parameters.min_wrist_angle = std::numeric_limits<double>::quiet_NaN();
+  expectWords(messageOf<ParameterError>([&] { reach(kinematics_, request, parameters); }), {"min_wrist_angle"});
+}
+
 TEST_F(ReachOfUr5e, parametersAreDocumentedAndChecked)
 {
   ReachParameters parameters;

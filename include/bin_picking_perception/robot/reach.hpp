@@ -56,7 +56,7 @@ struct Reach
 /// nearest to the home pose (sum of squares of the joint differences) is taken, the lower branch where they are equal:
 /// the same request always has the same answer. Of a failure, the branch that comes farthest is reported. Collisions of
 /// the arm itself are not looked at.
-/// \throws ParameterError no waypoints, or one that is not rigid or not finite
+/// \throws ParameterError a parameter out of its range; no waypoints, or one that is not rigid or not finite
 Reach reach(const Kinematics& kinematics, const ReachRequest& request, const ReachParameters& parameters = {});
 
 /// "none", "out_of_reach", ... for logs and messages.

@@ -206,6 +206,7 @@ Reach failed(const Fault& fault, std::size_t num_waypoints)
 
 Reach reach(const Kinematics& kinematics, const ReachRequest& request, const ReachParameters& parameters)
 {
+  checkRanges(parameters);
   const std::vector<Pose>& waypoints = request.waypoints_base_tool0;
   if (waypoints.empty())
     throw ParameterError("the reach of no waypoint was asked for; give at least one pose of tool0");
