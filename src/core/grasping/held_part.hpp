@@ -20,7 +20,8 @@ public:
   /// What the part covers on the way lies in here, camera frame.
   const Eigen::AlignedBox3f& box() const { return box_; }
 
-  /// Offers a point that rests in the camera frame: by how much it gets deeper into the part than it is now.
+  /// Offers a point that rests in the camera frame: by how much it gets deeper into the part than it is now; no more
+  /// than the first depth beyond max_drag that was met.
   void meet(const Eigen::Vector3f& point_camera, ObstacleKind kind, int index, Encounter& worst) const;
 
   /// The same for all points of another part.
