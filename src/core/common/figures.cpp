@@ -18,7 +18,28 @@ std::string roundedText(double value, int digits)
   return {text.data(), static_cast<std::size_t>(length)};
 }
 
+std::string shortText(double value, int digits)
+{
+  std::string text = roundedText(value, digits);
+  if (text.find('.') != std::string::npos)
+    text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.')
+    text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+std::string metres(double value, int digits) { return roundedText(value, digits) + " m"; }
 std::string millimetres(double metres, int digits) { return roundedText(1e3 * metres, digits) + " mm"; }
 std::string degrees(double radians, int digits) { return roundedText(radians * 180 / M_PI, digits) + " deg"; }
 std::string percent(double share, int digits) { return roundedText(100 * share, digits) + " %"; }
+
+FigureAndLimit toldApart(double figure, double limit, std::string (*text)(double, int), int digits)
+{
+  constexpr int MOST_DIGITS = 12;
+  figure = std::abs(figure);
+  limit = std::abs(limit);
+  while (figure != limit && digits < MOST_DIGITS && text(figure, digits) == text(limit, digits))
+    ++digits;
+  return {text(figure, digits), text(limit, digits)};
+}
 }  // namespace bin_picking
