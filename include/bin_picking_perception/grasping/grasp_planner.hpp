@@ -22,8 +22,8 @@ struct PreparedPart;
 
 /// From detections to grasps that a robot can take: each grasp of each part, expanded by symmetry and tolerance, is
 /// held against what a person would check, in this order: the detection (matching rate, open turn, avoid list), the
-/// gripper's kind and opening, the tilt, the collisions of the gripper on the whole way, those of the held part (first
-/// of the two for copies that use a tolerance), the robot's reach. What remains is ranked. Immutable; thread-safe.
+/// gripper's kind and opening, the tilt, the collisions of gripper and held part on the whole way, the robot's reach.
+/// What remains is ranked. Immutable; thread-safe.
 ///
 /// What is written comes first: copies turned or tilted by a tolerance are tried for detections that have no other
 /// grasp, in their order, as long as the answer has room (max_grasps), and up to a few for each.

@@ -9,7 +9,9 @@
 
 namespace bin_picking
 {
-std::string roundedText(double value, int digits)
+namespace
+{
+std::string fixedText(double value, int digits)
 {
   std::array<char, 350> text;  // the longest finite number has 309 digits before the point
   const int length = std::snprintf(text.data(), text.size(), "%.*f", std::clamp(digits, 0, 17), value);
@@ -17,10 +19,13 @@ std::string roundedText(double value, int digits)
   std::replace(text.data(), text.data() + length, ',', '.');
   return {text.data(), static_cast<std::size_t>(length)};
 }
+}  // namespace
+
+std::string roundedText(double value, int digits) { return fixedText(value, digits); }
 
 std::string shortText(double value, int digits)
 {
-  std::string text = roundedText(value, digits);
+  std::string text = fixedText(value, digits);
   if (text.find('.') != std::string::npos)
     text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.')
@@ -35,7 +40,7 @@ std::string percent(double share, int digits) { return roundedText(100 * share, 
 
 FigureAndLimit toldApart(double figure, double limit, std::string (*text)(double, int), int digits)
 {
-  constexpr int MOST_DIGITS = 12;
+  constexpr int MOST_DIGITS = 9;
   figure = std::abs(figure);
   limit = std::abs(limit);
   while (figure != limit && digits < MOST_DIGITS && text(figure, digits) == text(limit, digits))
