@@ -195,8 +195,8 @@ TEST_F(BoxOf40x30x20, theTightestTurnIsToldWithItsPlace)
   {
     const GraspCheck turned = checker_.check(grasp, variant.T_object_tip);
     smallest = std::min(smallest, turned.clearance);
-    found = found || (turned.clearance == all.clearance && turned.closest == all.closest &&
-                      turned.closest_at == all.closest_at);
+    found = found ||
+            (turned.clearance == all.clearance && turned.closest == all.closest && turned.closest_at == all.closest_at);
   }
   EXPECT_EQ(all.clearance, smallest);
   EXPECT_LT(smallest, upright.clearance);
