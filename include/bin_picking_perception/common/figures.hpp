@@ -6,11 +6,12 @@
 
 namespace bin_picking
 {
-/// Rounded to so many digits behind the point (0 to 17), whatever the locale: "12.30". Takes a fraction of a
+/// Rounded to so many digits behind the point (0 to 9), whatever the locale: "12.30". Takes a fraction of a
 /// microsecond, since thousands of sentences are written for a cloud. Not finite: "nan", "inf", "-inf".
 std::string roundedText(double value, int digits);
 
-/// Rounded to at most so many digits behind the point, without an exponent, trailing zeros or a minus before 0: "12.3".
+/// Rounded to at most so many digits behind the point (0 to 17), without an exponent, trailing zeros or a minus before
+/// 0: "12.3".
 std::string shortText(double value, int digits);
 
 /// "0.817 m".

@@ -29,8 +29,8 @@ struct PreparedPart;
 /// grasp, in their order, as long as the answer has room (max_grasps), and up to a few for each.
 ///
 /// The rejected are listed detection by detection: each grasp as written and each symmetric copy (one for all copies
-/// where the reason does not depend on the copy), and of the turned and tilted copies one for each grasp and kind of
-/// rejection that is not listed yet.
+/// where the reason does not depend on the copy, and of those too steep the least steep), and of the turned and tilted
+/// copies one for each grasp and kind of rejection that is not listed yet.
 class GraspPlanner
 {
 public:

@@ -61,6 +61,15 @@ inline float signedDistance(const Planes& planes, const Eigen::Vector3f& p)
   return distance;
 }
 
+/// Of a box in one frame, seen from another.
+inline std::vector<Eigen::Vector3f> cornersOf(const Eigen::AlignedBox3f& box, const Eigen::Isometry3f& T)
+{
+  std::vector<Eigen::Vector3f> corners;
+  for (int k = 0; k < 8; ++k)
+    corners.push_back(T * box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(k)));
+  return corners;
+}
+
 /// The planes in the frame from which T leads into theirs.
 inline Planes inFrame(const Planes& planes, const Eigen::Isometry3f& T)
 {

@@ -126,15 +126,12 @@ Refusal checkDetection(std::size_t index, const GraspSurroundings& s)
   return {why.empty() ? GraspRejection::None : GraspRejection::Avoided, why};
 }
 
-bool checkTilt(Grasp& grasp, const GraspSurroundings& s)
+Refusal steepness(double tilt, const GraspSurroundings& s)
 {
-  if (grasp.tilt <= s.setup.parameters.max_tilt)
-    return true;
-  const auto [tilt, most] = toldApart(grasp.tilt, s.setup.parameters.max_tilt, degrees);
+  const auto [figure, limit] = toldApart(tilt, s.setup.parameters.max_tilt, degrees);
   const char* reference = s.scene.bin ? "straight down into the bin" : "the view direction of the camera";
-  return reject(
-      grasp, GraspRejection::TiltTooLarge,
-      "The approach is tilted by " + tilt + " against " + reference + ", at most " + most + " are allowed (max_tilt).");
+  return {GraspRejection::TiltTooLarge, "The approach is tilted by " + figure + " against " + reference + ", at most " +
+                                            limit + " are allowed (max_tilt)."};
 }
 
 bool checkGripper(Grasp& grasp, const PreparedGrasp& prepared, const Eigen::Vector3d& out_camera,

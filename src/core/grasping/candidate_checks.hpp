@@ -43,9 +43,11 @@ private:
 /// What holds for all grasps of a detection: its matching rate, an open turn, the avoid list.
 Refusal checkDetection(std::size_t index, const GraspSurroundings& s);
 
+/// Of an approach that is tilted by more than is allowed.
+Refusal steepness(double tilt, const GraspSurroundings& s);
+
 // Each returns whether the grasp passed; if not, the rejection and its reason are filled in.
 
-bool checkTilt(Grasp& grasp, const GraspSurroundings& s);
 /// The gripper on the whole way: open in, closing, out. Fills in the closest passage.
 /// \param out_camera how the grasp is lifted, metres
 bool checkGripper(Grasp& grasp, const PreparedGrasp& prepared, const Eigen::Vector3d& out_camera,

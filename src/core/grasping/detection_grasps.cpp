@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace bin_picking
@@ -40,8 +41,20 @@ DetectionGrasps::DetectionGrasps(std::size_t index, const PartDefinition& defini
 void DetectionGrasps::tryAsWritten()
 {
   rejected.reserve(part_.as_written);
+  std::vector<std::optional<std::size_t>> least_steep(part_.grasps.size());
   for (std::size_t v = 0; v < part_.as_written; ++v)
-    asWritten(part_.variants[v]);
+  {
+    const std::size_t g = part_.variants[v].grasp;
+    if (const Refusal& refusal = refusalOf(g); refusal.rejection != GraspRejection::None)
+      refuse(v, refusal);
+    else if (!isTooSteep(v))
+      asWritten(v);
+    else if (!least_steep[g] || tiltOf(v) < tiltOf(*least_steep[g]))
+      least_steep[g] = v;
+  }
+  for (const std::optional<std::size_t>& v : least_steep)
+    if (v)
+      refuse(*v, steepness(tiltOf(*v), s_));
 }
 
 void DetectionGrasps::tryTurned()
@@ -50,36 +63,50 @@ void DetectionGrasps::tryTurned()
     turned(v);
 }
 
-/// What is checked at once for all copies of a grasp rules them all out: the first stands for them.
-void DetectionGrasps::asWritten(const GraspVariant& variant)
+const Refusal& DetectionGrasps::refusalOf(std::size_t g) const
 {
-  const std::size_t g = variant.grasp;
-  const Refusal& refusal = refusal_.rejection != GraspRejection::None ? refusal_ : part_.grasps[g].refusal;
-  const bool refused = refusal.rejection != GraspRejection::None;
-  if (refused && listed_[g].any())
+  return refusal_.rejection != GraspRejection::None ? refusal_ : part_.grasps[g].refusal;
+}
+
+/// What rules out more than one copy of a grasp: the first stands for all.
+void DetectionGrasps::refuse(std::size_t v, const Refusal& refusal)
+{
+  const std::size_t g = part_.variants[v].grasp;
+  if (isListed(g, refusal.rejection))
     return;
-  Grasp grasp = makeGrasp(variant);
-  if (refused)
-  {
-    grasp.rejection = refusal.rejection;
-    grasp.reason = refusal.reason;
-  }
-  else if (checkTilt(grasp, s_) && isFree(grasp, g) && comesOut(grasp, g) && isReached(grasp))
-    return allow(std::move(grasp), g);
+  Grasp grasp = makeGrasp(v);
+  grasp.rejection = refusal.rejection;
+  grasp.reason = refusal.reason;
   list(std::move(grasp), g);
 }
 
-/// What others hold down, no turn of the gripper brings out: that is looked at first.
+void DetectionGrasps::asWritten(std::size_t v)
+{
+  const std::size_t g = part_.variants[v].grasp;
+  if (isHeldDown(g))
+    return;
+  Grasp grasp = makeGrasp(v);
+  if (passes(grasp, g))
+    allow(std::move(grasp), g);
+  else
+    list(std::move(grasp), g);
+}
+
 void DetectionGrasps::turned(std::size_t v)
 {
   const std::size_t g = part_.variants[v].grasp;
-  if (part_.grasps[g].refusal.rejection != GraspRejection::None ||
-      (isListed(g, GraspRejection::TiltTooLarge) && isTooSteep(v)))
+  if (part_.grasps[g].refusal.rejection != GraspRejection::None)
     return;
-  if (s_.scene.bin && isListed(g, GraspRejection::HeldPartCollision))
+  if (isTooSteep(v))
+  {
+    if (!isListed(g, GraspRejection::TiltTooLarge))
+      refuse(v, steepness(tiltOf(v), s_));
     return;
-  Grasp grasp = makeGrasp(part_.variants[v]);
-  if (checkTilt(grasp, s_) && comesOut(grasp, g) && isFree(grasp, g) && isReached(grasp))
+  }
+  if (isHeldDown(g))
+    return;
+  Grasp grasp = makeGrasp(v);
+  if (passes(grasp, g))
     allow(std::move(grasp), g);
   else if (!isListed(g, grasp.rejection))
     list(std::move(grasp), g);
@@ -90,9 +117,30 @@ bool DetectionGrasps::isListed(std::size_t g, GraspRejection rejection) const
   return listed_[g].test(static_cast<std::size_t>(rejection));
 }
 
+/// Radians, between the approach and straight down into the bin (or the view direction).
+double DetectionGrasps::tiltOf(std::size_t v) const
+{
+  return std::acos(std::clamp(-part_.approaches_object[v].dot(up_object_), -1.0, 1.0));
+}
+
+/// By the direction alone where that tells, which is faster than an angle.
 bool DetectionGrasps::isTooSteep(std::size_t v) const
 {
-  return -part_.approaches_object[v].dot(up_object_) < std::cos(s_.setup.parameters.max_tilt) - ROUNDING;
+  const double max_tilt = s_.setup.parameters.max_tilt;
+  return -part_.approaches_object[v].dot(up_object_) < std::cos(max_tilt) - ROUNDING || !(tiltOf(v) <= max_tilt);
+}
+
+/// Out of a bin, all copies of a grasp are lifted alike: what others hold down, none of them brings out.
+bool DetectionGrasps::isHeldDown(std::size_t g) const
+{
+  return s_.scene.bin && isListed(g, GraspRejection::HeldPartCollision);
+}
+
+/// What tells most for the least comes first; without a bin each copy is lifted in a direction of its own.
+bool DetectionGrasps::passes(Grasp& grasp, std::size_t g)
+{
+  const bool moves = s_.scene.bin ? comesOut(grasp, g) && isFree(grasp, g) : isFree(grasp, g) && comesOut(grasp, g);
+  return moves && isReached(grasp);
 }
 
 bool DetectionGrasps::isFree(Grasp& grasp, std::size_t g) const
@@ -116,8 +164,9 @@ Eigen::Vector3d DetectionGrasps::awayFrom(const Pose& T_camera_grasp) const
   return s_.scene.bin ? s_.up_camera : Eigen::Vector3d(-T_camera_grasp.linear().col(2));
 }
 
-Grasp DetectionGrasps::makeGrasp(const GraspVariant& variant) const
+Grasp DetectionGrasps::makeGrasp(std::size_t v) const
 {
+  const GraspVariant& variant = part_.variants[v];
   const GraspDefinition& definition = definition_.grasps[variant.grasp];
   Grasp grasp;
   grasp.part = detection_.part;
@@ -133,7 +182,7 @@ Grasp DetectionGrasps::makeGrasp(const GraspVariant& variant) const
   grasp.width = definition.width;
   grasp.opening = definition.opening;
   grasp.priority = definition.priority;
-  grasp.tilt = std::acos(std::clamp(-grasp.tip.grasp.linear().col(2).dot(s_.up_camera), -1.0, 1.0));
+  grasp.tilt = tiltOf(v);
   return grasp;
 }
 

@@ -20,7 +20,8 @@ public:
   DetectionGrasps(std::size_t index, const PartDefinition& definition, const PreparedPart& part,
                   const GraspSurroundings& s);
 
-  /// All grasps as written, and their symmetric copies.
+  /// All grasps as written, and their symmetric copies. Of the copies of a grasp that are too steep, half of them as a
+  /// rule, the least steep is listed for all.
   void tryAsWritten();
 
   /// Those that use a tolerance, up to the first few that are allowed. One that is not is listed if no other of its
@@ -34,16 +35,21 @@ public:
   std::vector<Grasp> rejected;
 
 private:
-  void asWritten(const GraspVariant& variant);
+  const Refusal& refusalOf(std::size_t g) const;
+  void refuse(std::size_t v, const Refusal& refusal);
+  void asWritten(std::size_t v);
   void turned(std::size_t v);
   bool isListed(std::size_t g, GraspRejection rejection) const;
+  double tiltOf(std::size_t v) const;
   bool isTooSteep(std::size_t v) const;
+  bool isHeldDown(std::size_t g) const;
+  bool passes(Grasp& grasp, std::size_t g);
   bool isFree(Grasp& grasp, std::size_t g) const;
   bool comesOut(Grasp& grasp, std::size_t g);
   bool isReached(Grasp& grasp) const;
   Eigen::Vector3d outOf(const Grasp& grasp, std::size_t g) const;
   Eigen::Vector3d awayFrom(const Pose& T_camera_grasp) const;
-  Grasp makeGrasp(const GraspVariant& variant) const;
+  Grasp makeGrasp(std::size_t v) const;
   GraspWay wayThrough(const Pose& T_camera_grasp, const GraspDefinition& definition) const;
   void allow(Grasp&& grasp, std::size_t g);
   void list(Grasp&& grasp, std::size_t g);

@@ -9,7 +9,13 @@ namespace bin_picking
 {
 namespace
 {
-constexpr float MIN_STEP = 0.0005f;  // metres: where a point is about to touch
+constexpr float MIN_STEP = 0.0005f;        // metres: where a point is about to touch
+constexpr float BETWEEN_POINTS = 0.0015f;  // metres: the surface's points lie closer than that
+
+Eigen::Vector3f wayOfOthers(const Eigen::Vector3d& motion)
+{
+  return (motion.norm() > 0 ? Eigen::Vector3d(-motion.normalized()) : Eigen::Vector3d::UnitZ()).cast<float>();
+}
 }  // namespace
 
 HeldPart::HeldPart(const DistanceField& field, const SurfaceBlocks& surface, const Pose& T_camera_object,
@@ -17,19 +23,18 @@ HeldPart::HeldPart(const DistanceField& field, const SurfaceBlocks& surface, con
     : field_(field),
       surface_(surface),
       T_object_camera_(T_camera_object.inverse().cast<float>()),
+      way_object_(T_object_camera_.linear() * wayOfOthers(motion_camera)),
+      per_way_(way_object_.cwiseInverse()),
       length_(static_cast<float>(motion_camera.norm())),
       max_drag_(max_drag),
-      motion_camera_(motion_camera)
+      motion_camera_(motion_camera),
+      corners_(cornersOf(surface.box(), Eigen::Isometry3f(T_camera_object.cast<float>()))),
+      tops_(surface, way_object_, LOOK_AHEAD + BETWEEN_POINTS)
 {
-  const Eigen::Vector3d way = length_ > 0 ? Eigen::Vector3d(-motion_camera.normalized()) : Eigen::Vector3d::UnitZ();
-  way_object_ = T_object_camera_.linear() * way.cast<float>();
-  const Eigen::Isometry3f T_camera(T_camera_object.cast<float>());
-  for (int k = 0; k < 8; ++k)
-  {
-    const Eigen::Vector3f corner = T_camera * surface.box().corner(static_cast<Eigen::AlignedBox3f::CornerType>(k));
+  for (std::size_t k = 0; k < 8; ++k)
+    corners_.emplace_back(corners_[k] + motion_camera.cast<float>());
+  for (const Eigen::Vector3f& corner : corners_)
     box_.extend(corner);
-    box_.extend(Eigen::Vector3f(corner + motion_camera.cast<float>()));
-  }
 }
 
 bool HeldPart::passes(const Eigen::Vector3f& center, float radius, float& from, float& to) const
@@ -40,15 +45,16 @@ bool HeldPart::passes(const Eigen::Vector3f& center, float radius, float& from, 
   {
     const float low = surface_.box().min()[axis] - radius - center[axis];
     const float high = surface_.box().max()[axis] + radius - center[axis];
-    const float way = way_object_[axis];
-    if (std::abs(way) < 1e-6f)
+    if (std::abs(way_object_[axis]) < 1e-6f)
     {
       if (low > 0 || high < 0)
         return false;
       continue;
     }
-    from = std::max(from, std::min(low / way, high / way));
-    to = std::min(to, std::max(low / way, high / way));
+    const float at_low = low * per_way_[axis];
+    const float at_high = high * per_way_[axis];
+    from = std::max(from, std::min(at_low, at_high));
+    to = std::min(to, std::max(at_low, at_high));
   }
   return from <= to;
 }
@@ -59,7 +65,7 @@ float HeldPart::deepening(const Eigen::Vector3f& point) const
 {
   float from = 0;
   float to = 0;
-  if (!passes(point, 0, from, to))
+  if (!mayMeet(point) || !passes(point, 0, from, to))
     return -field_.band();
   const float at_rest = std::min(0.0f, field_.at(point));
   float nearest = field_.band();
@@ -92,8 +98,9 @@ void HeldPart::meet(const SurfaceBlocks& other, const Pose& T_camera_other, int 
       continue;
     for (std::size_t k = block.begin; k < block.end; ++k)
     {
-      const float deeper = deepening(T_object_other * other.points()[k]);
-      keepWorse(worst, {-deeper, -max_drag_, ObstacleKind::Part, index, T_camera * other.points()[k]});
+      const float deeper = deepening(T_object_other * other.point(k));
+      if (!(deeper - max_drag_ <= -worst.margin()))
+        keepWorse(worst, {-deeper, -max_drag_, ObstacleKind::Part, index, T_camera * other.point(k)});
     }
     if (!worst.free())
       return;

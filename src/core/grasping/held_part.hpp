@@ -4,7 +4,7 @@
 
 #include "bin_picking_perception/model/distance_field.hpp"
 #include "body_sweep.hpp"
-#include "surface_blocks.hpp"
+#include "column_tops.hpp"
 
 namespace bin_picking
 {
@@ -19,6 +19,8 @@ public:
 
   /// What the part covers on the way lies in here, camera frame.
   const Eigen::AlignedBox3f& box() const { return box_; }
+  /// The corners of the part's own box at both ends of the way, camera frame.
+  const std::vector<Eigen::Vector3f>& corners() const { return corners_; }
 
   /// Offers a point that rests in the camera frame: by how much it gets deeper into the part than it is now; no more
   /// than the first depth beyond max_drag that was met.
@@ -32,6 +34,11 @@ public:
 
 private:
   float deepening(const Eigen::Vector3f& point_object) const;
+  /// Whether the point may come near on its way: most others lie under the part, and beside it.
+  bool mayMeet(const Eigen::Vector3f& point_object) const
+  {
+    return point_object.dot(way_object_) <= tops_.at(point_object) + LOOK_AHEAD;
+  }
   /// The share of the way at which a sphere at rest enters the part's box; > 1: never.
   bool passes(const Eigen::Vector3f& center_object, float radius, float& from, float& to) const;
 
@@ -39,9 +46,12 @@ private:
   const SurfaceBlocks& surface_;
   Eigen::Isometry3f T_object_camera_;
   Eigen::Vector3f way_object_;  ///< of others, seen from the part: unit direction
+  Eigen::Vector3f per_way_;     ///< one by that
   float length_;                ///< of the way, metres
   float max_drag_;
   Eigen::Vector3d motion_camera_;
   Eigen::AlignedBox3f box_;
+  std::vector<Eigen::Vector3f> corners_;
+  ColumnTops tops_;
 };
 }  // namespace bin_picking

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -67,7 +68,9 @@ struct Obstacles::Impl
     const SurfaceBlocks* surface = nullptr;
     Eigen::Isometry3f T_camera_object;
     Eigen::AlignedBox3f box_camera;
-    OwnPixels pixels;
+    /// Of few parts: what others hold down needs no more than those.
+    mutable std::once_flag has_pixels;
+    mutable OwnPixels pixels;
   };
 
   ObstacleParameters parameters;
@@ -86,18 +89,19 @@ struct Obstacles::Impl
   void preparePart(std::size_t i)
   {
     Part& part = parts[i];
-    const auto T = Eigen::Isometry3f(part.placed.T_camera_object.cast<float>());
-    part.T_camera_object = T;
-    for (int k = 0; k < 8; ++k)
-      part.box_camera.extend(T * part.surface->box().corner(static_cast<Eigen::AlignedBox3f::CornerType>(k)));
+    part.T_camera_object = Eigen::Isometry3f(part.placed.T_camera_object.cast<float>());
+    for (const Eigen::Vector3f& corner : cornersOf(part.surface->box(), part.T_camera_object))
+      part.box_camera.extend(corner);
   }
 
-  void findPixels(std::size_t i)
+  const OwnPixels& pixelsOf(const Part& part) const
   {
-    Part& part = parts[i];
-    const DistanceField& field = part.placed.model->field;
-    part.pixels = seen->ownPixels(field, part.surface->box(), part.placed.T_camera_object,
-                                  std::min(static_cast<float>(parameters.target_tolerance), BAND_SHARE * field.band()));
+    std::call_once(part.has_pixels, [&] {
+      const DistanceField& field = part.placed.model->field;
+      const float tolerance = std::min(static_cast<float>(parameters.target_tolerance), BAND_SHARE * field.band());
+      part.pixels = seen->ownPixels(field, part.surface->box(), part.placed.T_camera_object, tolerance);
+    });
+    return part.pixels;
   }
 
   void meetBin(const BodySweep& body, Encounter& worst) const
@@ -141,11 +145,26 @@ struct Obstacles::Impl
     if (!worst.free())
       return worst;
     if (seen)
-      keepWorse(worst, seen->nearest(body, parts[target].pixels));
+      keepWorse(worst, seen->nearest(body, pixelsOf(parts[target])));
     for (std::size_t i = 0; i < parts.size() && worst.free(); ++i)
       if (i != target)
         meetPart(body, i, false, worst);
     return worst;
+  }
+
+  /// Those that reach into a box, first what lies farthest in a direction: where a part is pulled that way, it is what
+  /// lies on it.
+  std::vector<std::size_t> neighboursOf(std::size_t target, const Eigen::AlignedBox3f& box,
+                                        const Eigen::Vector3d& direction) const
+  {
+    std::vector<std::size_t> neighbours;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (i != target && parts[i].box_camera.intersects(box))
+        neighbours.push_back(i);
+    const auto reach = [&](std::size_t i) { return parts[i].box_camera.center().cast<double>().dot(direction); };
+    std::stable_sort(neighbours.begin(), neighbours.end(),
+                     [&](std::size_t a, std::size_t b) { return reach(a) > reach(b); });
+    return neighbours;
   }
 
   Encounter meetHeld(const Eigen::Vector3d& motion_camera, std::size_t target) const
@@ -157,14 +176,17 @@ struct Obstacles::Impl
     for (std::size_t i = 0; i < sides.size(); ++i)
       way.meetSide(sides[i].box, sides[i].floor ? ObstacleKind::BinFloor : ObstacleKind::BinWall, static_cast<int>(i),
                    worst);
-    for (std::size_t i = 0; i < parts.size() && worst.free(); ++i)
-      if (i != target && parts[i].box_camera.intersects(way.box()))
+    for (const std::size_t i : neighboursOf(target, way.box(), motion_camera))
+      if (worst.free())
         way.meet(*parts[i].surface, parts[i].placed.T_camera_object, static_cast<int>(i), worst);
     if (seen && worst.free())
-      seen->forEachPoint(way.box(), [&](int u, int v, const Eigen::Vector3f& point) {
-        if (way.box().contains(point) && !held.pixels.at(u, v))
+    {
+      const OwnPixels& own = pixelsOf(held);
+      seen->forEachPoint(way.corners(), [&](int u, int v, const Eigen::Vector3f& point) {
+        if (way.box().contains(point) && !own.at(u, v))
           way.meet(point, ObstacleKind::Surface, -1, worst);
       });
+    }
     return worst;
   }
 
@@ -241,14 +263,14 @@ Obstacles::Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<Plac
     requireFinite(*bin);
     impl->sides = binSides(*bin);
   }
-  for (const PlacedPart& part : parts)
+  impl->parts = std::vector<Impl::Part>(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i)
   {
-    if (!part.model)
+    if (!parts[i].model)
       throw ParameterError("A part is given without its model; the collision check needs its surface.");
-    requireFinite(part.T_camera_object.matrix(), "The pose of a part, " + part.model->name + ",");
-    impl->surfaces.emplace(part.model, nullptr);
-    impl->parts.emplace_back();
-    impl->parts.back().placed = part;
+    requireFinite(parts[i].T_camera_object.matrix(), "The pose of a part, " + parts[i].model->name + ",");
+    impl->surfaces.emplace(parts[i].model, nullptr);
+    impl->parts[i].placed = parts[i];
   }
   std::vector<const TrainedModel*> models;
   for (const auto& [model, surface] : impl->surfaces)
@@ -263,13 +285,8 @@ Obstacles::Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<Plac
     part.surface = impl->surfaces.at(part.placed.model).get();
   for (std::size_t i = 0; i < impl->parts.size(); ++i)
     impl->preparePart(i);
-  if (impl->seen)  // the longest first
-    executor.forEach(SeenSpace::STEPS + impl->parts.size(), [&](std::size_t i) {
-      if (i < SeenSpace::STEPS)
-        impl->seen->prepare(i);
-      else
-        impl->findPixels(i - SeenSpace::STEPS);
-    });
+  if (impl->seen)
+    executor.forEach(SeenSpace::STEPS, [&](std::size_t i) { impl->seen->prepare(i); });
   impl_ = std::move(impl);
 }
 

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <limits>
 
-#include "seen_space_lanes.hpp"
+#include "sweep_lanes.hpp"
 
 namespace bin_picking
 {
@@ -90,6 +90,7 @@ void SeenSpace::extendTo(const DepthGrid& measured, const Bin* bin)
   stride_ = wholeBlocks(width_);
   fx_ = static_cast<float>(camera.fx);
   fy_ = static_cast<float>(camera.fy);
+  step_ = {1 / fx_, 1 / fy_};
   cx_ = static_cast<float>(camera.cx + left_);
   cy_ = static_cast<float>(camera.cy + top_);
   const auto pixels = static_cast<std::size_t>(stride_ * wholeBlocks(height_));
@@ -232,43 +233,33 @@ SeenSpace::Window SeenSpace::windowOf(const Points& points, float margin) const
           std::min(height_, cut(std::ceil(window.max().y()), height_) + 1)};
 }
 
-SeenSpace::Window SeenSpace::windowOf(const Eigen::AlignedBox3f& box) const
-{
-  std::array<Eigen::Vector3f, 8> corners;
-  for (int k = 0; k < 8; ++k)
-    corners[static_cast<std::size_t>(k)] = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(k));
-  return windowOf(corners, 0);
-}
-
 OwnPixels SeenSpace::ownPixels(const DistanceField& field, const Eigen::AlignedBox3f& box_object,
                                const Pose& T_camera_object, float tolerance) const
 {
-  const Eigen::Isometry3f T_camera(T_camera_object.cast<float>());
-  Eigen::AlignedBox3f box;
-  for (int k = 0; k < 8; ++k)
-    box.extend(T_camera * box_object.corner(static_cast<Eigen::AlignedBox3f::CornerType>(k)));
-  const Eigen::Vector3f around = Eigen::Vector3f::Constant(2 * tolerance);
-  const Window w = windowOf(Eigen::AlignedBox3f(box.min() - around, box.max() + around));
-  OwnPixels pixels;
-  pixels.left = w.left;
-  pixels.top = w.top;
-  pixels.width = std::max(0, w.right - w.left);
-  pixels.height = std::max(0, w.bottom - w.top);
-  pixels.own.assign(static_cast<std::size_t>(pixels.width * pixels.height), 0);
+  const std::vector<Eigen::Vector3f> corners = cornersOf(box_object, Eigen::Isometry3f(T_camera_object.cast<float>()));
+  const auto [front, back] = std::minmax_element(
+      corners.begin(), corners.end(), [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return a.z() < b.z(); });
+  const float nearest = front->z() - tolerance;
+  const float farthest = back->z() + tolerance;
+  // From pixels to rays in the part's frame, since each is only asked once.
   const Eigen::Isometry3f T_object(T_camera_object.inverse().cast<float>());
-  const float nearest = box.min().z() - tolerance;
-  const float farthest = box.max().z() + tolerance;
+  const Eigen::Vector3f camera = T_object.translation();
+  const Eigen::Vector3f right = T_object.linear().col(0) * step_.x();
+  const Eigen::Vector3f down = T_object.linear().col(1) * step_.y();
+  const Eigen::Vector3f corner = T_object.linear() * ray(0, 0);
   const auto isOwn = [&](std::size_t i, int u, int v) {
-    return depth_[i] >= nearest && depth_[i] <= farthest &&
-           std::abs(field.at(T_object * (depth_[i] * ray(u, v)))) <= tolerance;
+    const float depth = depth_[i];
+    if (depth < nearest || depth > farthest)
+      return false;
+    const Eigen::Vector3f ray_object = corner + static_cast<float>(u) * right + static_cast<float>(v) * down;
+    return std::abs(field.at(camera + depth * ray_object)) <= tolerance;
   };
-  const auto ownAt = [&](int u, int v) -> std::uint8_t& {
-    return pixels.own[static_cast<std::size_t>((v - w.top) * pixels.width + u - w.left)];
-  };
+  const Window w = windowOf(corners, tolerance);
+  OwnPixels own(w.left, w.top, w.right, w.bottom);
   for (int v = w.top; v < w.bottom; ++v)
     for (int u = w.left; u < w.right; ++u)
-      if (measured_[index(u, v)] != 0)
-        ownAt(u, v) = isOwn(index(u, v), u, v) ? 1 : 0;
+      if (measured_[index(u, v)] != 0 && isOwn(index(u, v), u, v))
+        own.set(u, v);
   // Of what is hidden, many pixels have the same end of a bridge: most of these are known by now.
   for (int v = w.top; v < w.bottom; ++v)
     for (int u = w.left; u < w.right; ++u)
@@ -279,9 +270,10 @@ OwnPixels SeenSpace::ownPixels(const DistanceField& field, const Eigen::AlignedB
       const int x = end % stride_;
       const int y = end / stride_;
       const bool inside = x >= w.left && x < w.right && y >= w.top && y < w.bottom;
-      ownAt(u, v) = inside ? ownAt(x, y) : isOwn(static_cast<std::size_t>(end), x, y) ? 1 : 0;
+      if (inside ? own.at(x, y) : isOwn(static_cast<std::size_t>(end), x, y))
+        own.set(u, v);
     }
-  return pixels;
+  return own;
 }
 
 /// Whether the body, LOOK_AHEAD larger, reaches as far as `nearest` on any ray of a block. By the block's corners:
@@ -318,31 +310,41 @@ struct SeenSpace::Search
     if (!space.mayMeet(body.planes, u, v,
                        space.block_nearest_[static_cast<std::size_t>(v / BLOCK * (space.stride_ / BLOCK) + u / BLOCK)]))
       return;
-    for (int row = v; row < v + BLOCK; ++row)
-      pixels(u, row);
+    Lanes lanes;
+    std::array<std::uint8_t, BLOCK> own;
+    for (int row = 0; row < BLOCK; ++row)
+      own[static_cast<std::size_t>(row)] = fill(lanes, row, u, v + row);
+    const unsigned rows = meet(body.planes, space.ray(u, v), space.step_, LOOK_AHEAD, lanes);
+    for (int row = 0; row < BLOCK; ++row)
+      if (rows >> row & 1)
+        keep(lanes, row, own[static_cast<std::size_t>(row)], u, v + row);
   }
 
-  void pixels(int u, int v)
+  /// \return the target's own pixels
+  std::uint8_t fill(Lanes& lanes, int row, int u, int v) const
   {
     const std::size_t first = space.index(u, v);
-    const std::uint8_t own = target.inRow(u, v);
-    Lanes lanes;
-    std::memcpy(lanes.depth, &space.depth_[first], sizeof(lanes.depth));
-    std::memcpy(lanes.allowed, &space.allowed_[first], sizeof(lanes.allowed));
+    const std::uint8_t own = target.inBlock(u / BLOCK, v);
+    std::memcpy(lanes.depth[row], &space.depth_[first], sizeof(lanes.depth[row]));
+    std::memcpy(lanes.allowed[row], &space.allowed_[first], sizeof(lanes.allowed[row]));
     for (int k = 0; own != 0 && k < BLOCK; ++k)
       if (own >> k & 1)
-        lanes.allowed[k] = space.allowed_own_[first + static_cast<std::size_t>(k)];
-    if (!meet(body.planes, space.ray(u, v), 1 / space.fx_, LOOK_AHEAD, lanes))
-      return;
+        lanes.allowed[row][k] = space.allowed_own_[first + static_cast<std::size_t>(k)];
+    return own;
+  }
+
+  void keep(const Lanes& lanes, int row, std::uint8_t own, int u, int v)
+  {
+    const std::size_t first = space.index(u, v);
     for (int k = 0; k < BLOCK; ++k)
     {
-      if (lanes.beyond[k] > 0)
-        keepWorse(unseen, {-lanes.beyond[k], 0, ObstacleKind::Unknown, -1,
-                           (lanes.allowed[k] + lanes.beyond[k]) * space.ray(u + k, v)});
-      if (lanes.distance[k] < LOOK_AHEAD && space.measured_[first + static_cast<std::size_t>(k)] != 0 &&
-          !(own >> k & 1))
-        keepWorse(surface,
-                  {lanes.distance[k], space.surface_clearance_, ObstacleKind::Surface, -1, space.pointAt(u + k, v)});
+      const float beyond = lanes.beyond[row][k];
+      const float distance = lanes.distance[row][k];
+      if (beyond > 0)
+        keepWorse(unseen,
+                  {-beyond, 0, ObstacleKind::Unknown, -1, (lanes.allowed[row][k] + beyond) * space.ray(u + k, v)});
+      if (distance < LOOK_AHEAD && space.measured_[first + static_cast<std::size_t>(k)] != 0 && !(own >> k & 1))
+        keepWorse(surface, {distance, space.surface_clearance_, ObstacleKind::Surface, -1, space.pointAt(u + k, v)});
     }
   }
 };

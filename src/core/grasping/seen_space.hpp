@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -10,32 +11,47 @@
 
 namespace bin_picking
 {
-/// The pixels of a part: those whose measured point lies on its surface, and gaps that it alone hides.
-struct OwnPixels
+/// The pixels of a part: those whose measured point lies on its surface, and gaps that it alone hides. By blocks of
+/// eight pixels of a row, a bit for each.
+class OwnPixels
 {
-  int left = 0;
-  int top = 0;
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint8_t> own;  ///< row-major
-
-  bool at(int u, int v) const
+public:
+  OwnPixels() = default;
+  /// None yet, of those in a rectangle.
+  OwnPixels(int left, int top, int right, int bottom)
+      : left_(left / 8), top_(top), width_(std::max(0, (right + 7) / 8 - left_)), height_(std::max(0, bottom - top))
   {
-    const int x = u - left;
-    const int y = v - top;
-    return x >= 0 && y >= 0 && x < width && y < height && own[static_cast<std::size_t>(y * width + x)] != 0;
+    bits_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0);
   }
 
-  /// Eight pixels from one on, a bit for each.
-  std::uint8_t inRow(int u, int v) const
+  /// In the rectangle.
+  void set(int u, int v)
   {
-    if (v < top || v >= top + height || u >= left + width || u + 8 <= left)
-      return 0;
-    unsigned bits = 0;
-    for (int k = 0; k < 8; ++k)
-      bits |= at(u + k, v) ? 1u << k : 0u;
-    return static_cast<std::uint8_t>(bits);
+    std::uint8_t& bits = bits_[index(u / 8, v)];
+    bits = static_cast<std::uint8_t>(bits | 1u << u % 8);
   }
+
+  bool at(int u, int v) const { return (inBlock(u / 8, v) >> u % 8 & 1) != 0; }
+
+  /// \param block of eight columns, from the picture's left edge
+  std::uint8_t inBlock(int block, int v) const
+  {
+    const bool inside = block >= left_ && block < left_ + width_ && v >= top_ && v < top_ + height_;
+    return inside ? bits_[index(block, v)] : std::uint8_t{0};
+  }
+
+private:
+  std::size_t index(int block, int v) const
+  {
+    return static_cast<std::size_t>(v - top_) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(block - left_);
+  }
+
+  int left_ = 0;  ///< in blocks, as the width
+  int top_ = 0;
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<std::uint8_t> bits_;
 };
 
 /// What the camera saw: per pixel's ray how far it is free. In the camera's own frame, so that each ray is exact and no
@@ -55,11 +71,11 @@ public:
   /// The worst of measured points that are not the target's, and of unseen space.
   Encounter nearest(const BodySweep& body, const OwnPixels& target) const;
 
-  /// Calls visit(point) for each measured point in a rectangle that encloses the box (camera frame).
+  /// Calls visit(u, v, point) for each measured point in a rectangle that encloses the hull of some (camera frame).
   template <typename Visit>
-  void forEachPoint(const Eigen::AlignedBox3f& box, const Visit& visit) const
+  void forEachPoint(const std::vector<Eigen::Vector3f>& hull, const Visit& visit) const
   {
-    const Window w = windowOf(box);
+    const Window w = windowOf(hull, 0);
     for (int v = w.top; v < w.bottom; ++v)
       for (int u = w.left; u < w.right; ++u)
         if (measured_[index(u, v)] != 0)
@@ -84,12 +100,11 @@ private:
   std::size_t index(int u, int v) const { return static_cast<std::size_t>(v * stride_ + u); }
   Eigen::Vector3f ray(int u, int v) const
   {
-    return {(static_cast<float>(u) - cx_) / fx_, (static_cast<float>(v) - cy_) / fy_, 1.0f};
+    return {(static_cast<float>(u) - cx_) * step_.x(), (static_cast<float>(v) - cy_) * step_.y(), 1.0f};
   }
   Eigen::Vector3f pointAt(int u, int v) const { return depth_[index(u, v)] * ray(u, v); }
   template <typename Points>
   Window windowOf(const Points& points, float margin) const;
-  Window windowOf(const Eigen::AlignedBox3f& box) const;
   bool mayMeet(const Planes& planes, int u, int v, float nearest) const;
   void extendTo(const DepthGrid& measured, const Bin* bin);
   void bridgeGaps(const DepthGrid& measured, const Bin* bin);
@@ -104,8 +119,9 @@ private:
   int left_ = 0;    ///< where the measured picture begins in the extended one
   int top_ = 0;
   float fx_ = 0, fy_ = 0, cx_ = 0, cy_ = 0;
-  std::vector<float> depth_;            ///< metres along z; bridged where not measured
-  std::vector<std::uint8_t> measured_;  ///< 1: a measured point
+  Eigen::Vector2f step_ = Eigen::Vector2f::Zero();  ///< of the rays from pixel to pixel: one by the focal lengths
+  std::vector<float> depth_;                        ///< metres along z; bridged where not measured
+  std::vector<std::uint8_t> measured_;              ///< 1: a measured point
   std::vector<std::int32_t>
       hidden_by_;                     ///< of a bridged pixel: the measured one at the nearer end of the bridge; or -1
   std::vector<float> allowed_;        ///< how far a body may go along the ray

@@ -5,40 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sweep_lanes.hpp"
+
 namespace bin_picking
 {
 namespace
 {
 // Cells along the longest edge: some dozen points per block of a part with a few thousand.
 constexpr float CELLS = 12;
-
-/// Distances of points from a body, as far as they are less than a limit. Neighbours are most often told by the same
-/// face: it is asked first.
-class Probe
-{
-public:
-  explicit Probe(const Planes& planes) : planes_(planes) {}
-
-  /// The signed distance if it is less than `limit`; else something that is not.
-  float distanceBelow(float limit, const Eigen::Vector3f& p)
-  {
-    float distance = of(told_, p);
-    for (std::size_t i = 0; distance < limit && i < planes_.size(); ++i)
-    {
-      const float other = of(i, p);
-      if (other >= limit)
-        told_ = i;
-      distance = std::max(distance, other);
-    }
-    return distance;
-  }
-
-private:
-  float of(std::size_t i, const Eigen::Vector3f& p) const { return planes_[i].head<3>().dot(p) + planes_[i].w(); }
-
-  const Planes& planes_;
-  std::size_t told_ = 0;
-};
 }  // namespace
 
 SurfaceBlocks::SurfaceBlocks(const std::vector<Eigen::Vector3f>& points)
@@ -59,38 +33,69 @@ SurfaceBlocks::SurfaceBlocks(const std::vector<Eigen::Vector3f>& points)
   for (std::size_t i = 1; i < begin.size(); ++i)
     begin[i] += begin[i - 1];
   std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
-  points_.resize(points.size());
+  std::vector<Eigen::Vector3f> by_cell(points.size());
   for (const Eigen::Vector3f& p : points)
-    points_[next[cellOf(p)]++] = p;
+    by_cell[next[cellOf(p)]++] = p;
 
   for (std::size_t i = 0; i + 1 < begin.size(); ++i)
+    if (begin[i] < begin[i + 1])
+      addBlock(&by_cell[begin[i]], begin[i + 1] - begin[i]);
+  centers_.fillUp();
+}
+
+void SurfaceBlocks::addBlock(const Eigen::Vector3f* points, std::size_t count)
+{
+  Eigen::AlignedBox3f box;
+  const std::size_t begin = points_.x.size();
+  for (std::size_t k = 0; k < count; ++k)
   {
-    if (begin[i] == begin[i + 1])
-      continue;
-    Eigen::AlignedBox3f box;
-    for (std::size_t k = begin[i]; k < begin[i + 1]; ++k)
-      box.extend(points_[k]);
-    blocks_.push_back({box.center(), 0.5f * box.diagonal().norm(), begin[i], begin[i + 1]});
+    box.extend(points[k]);
+    points_.add(points[k]);
   }
+  points_.fillUp();
+  blocks_.push_back({box.center(), 0.5f * box.diagonal().norm(), begin, begin + count});
+  centers_.add(box.center());
+}
+
+void SurfaceBlocks::Coordinates::add(const Eigen::Vector3f& p)
+{
+  x.push_back(p.x());
+  y.push_back(p.y());
+  z.push_back(p.z());
+}
+
+void SurfaceBlocks::Coordinates::fillUp()
+{
+  while (x.size() % BLOCK != 0)
+    add((*this)[x.size() - 1]);
+}
+
+void SurfaceBlocks::Coordinates::distancesFrom(const Planes& planes, std::size_t begin, std::size_t end,
+                                               std::vector<float>& distances) const
+{
+  distances.resize((end - begin + BLOCK - 1) / BLOCK * BLOCK);
+  signedDistances(planes, &x[begin], &y[begin], &z[begin], distances.size(), distances.data());
 }
 
 void SurfaceBlocks::deepest(const Planes& planes, float& limit, Eigen::Vector3f& point) const
 {
-  Probe probe(planes);
-  for (const Block& block : blocks_)
+  if (blocks_.empty())
+    return;
+  std::vector<float> of_blocks;
+  std::vector<float> of_points;
+  centers_.distancesFrom(planes, 0, blocks_.size(), of_blocks);
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
   {
-    const float farthest = limit + block.radius;
-    if (probe.distanceBelow(farthest, block.center) >= farthest)
+    const Block& block = blocks_[b];
+    if (of_blocks[b] >= limit + block.radius)
       continue;
+    points_.distancesFrom(planes, block.begin, block.end, of_points);
     for (std::size_t k = block.begin; k < block.end; ++k)
-    {
-      const float distance = probe.distanceBelow(limit, points_[k]);
-      if (distance < limit)
+      if (of_points[k - block.begin] < limit)
       {
-        limit = distance;
+        limit = of_points[k - block.begin];
         point = points_[k];
       }
-    }
   }
 }
 }  // namespace bin_picking

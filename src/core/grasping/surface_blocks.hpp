@@ -28,11 +28,27 @@ public:
   void deepest(const Planes& planes, float& limit, Eigen::Vector3f& point) const;
 
   const std::vector<Block>& blocks() const { return blocks_; }
-  const std::vector<Eigen::Vector3f>& points() const { return points_; }
+  /// \param index from a block's begin to before its end
+  Eigen::Vector3f point(std::size_t index) const { return points_[index]; }
   const Eigen::AlignedBox3f& box() const { return box_; }
 
 private:
-  std::vector<Eigen::Vector3f> points_;
+  /// Coordinate by coordinate, so that many are compared at once.
+  struct Coordinates
+  {
+    std::vector<float> x, y, z;
+
+    void add(const Eigen::Vector3f& p);
+    /// Repeats the last point up to a number that is computed at once.
+    void fillUp();
+    Eigen::Vector3f operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+    void distancesFrom(const Planes& planes, std::size_t begin, std::size_t end, std::vector<float>& distances) const;
+  };
+
+  void addBlock(const Eigen::Vector3f* points, std::size_t count);
+
+  Coordinates points_;   ///< each block begins at one of the multiples that fillUp() leaves
+  Coordinates centers_;  ///< of the blocks
   std::vector<Block> blocks_;
   Eigen::AlignedBox3f box_;
 };

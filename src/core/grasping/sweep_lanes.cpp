@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "sweep_lanes.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "../common/simd.hpp"
+
+namespace bin_picking
+{
+namespace
+{
+constexpr float NEVER = std::numeric_limits<float>::max();
+constexpr float PARALLEL = 1e-20f;  // in place of zero, so that the crossing lies far off on the right side
+
+BIN_PICKING_SIMD unsigned meetRows(const float* planes, std::size_t count, const float* ray, const float* step,
+                                   float near, Lanes* lanes)
+{
+  unsigned rows = 0;
+  for (int row = 0; row < BLOCK; ++row)
+  {
+    float distance[BLOCK];
+    float enters[BLOCK];
+    float leaves[BLOCK];
+    for (int k = 0; k < BLOCK; ++k)
+    {
+      distance[k] = -NEVER;
+      enters[k] = lanes->allowed[row][k];
+      leaves[k] = NEVER;
+    }
+    const float ray_y = ray[1] + static_cast<float>(row) * step[1];
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const float* plane = planes + 4 * i;
+      // Along a ray, the height over the plane grows by this for each metre of depth.
+      const float along_first = plane[0] * ray[0] + plane[1] * ray_y + plane[2];
+      const float along_step = plane[0] * step[0];
+      const float offset = plane[3];
+      for (int k = 0; k < BLOCK; ++k)
+      {
+        const float raw = along_first + along_step * static_cast<float>(k);
+        const float along = raw == 0.0f ? PARALLEL : raw;
+        const float height = along * lanes->depth[row][k] + offset;
+        distance[k] = height > distance[k] ? height : distance[k];
+        const float crossing = -offset / along;
+        const float later = crossing > enters[k] ? crossing : enters[k];
+        const float earlier = crossing < leaves[k] ? crossing : leaves[k];
+        enters[k] = along < 0.0f ? later : enters[k];
+        leaves[k] = along > 0.0f ? earlier : leaves[k];
+      }
+    }
+    float nearest = NEVER;
+    float farthest = 0;
+    for (int k = 0; k < BLOCK; ++k)
+    {
+      const float beyond = leaves[k] > enters[k] ? leaves[k] - lanes->allowed[row][k] : 0.0f;
+      lanes->distance[row][k] = distance[k];
+      lanes->beyond[row][k] = beyond;
+      nearest = distance[k] < nearest ? distance[k] : nearest;
+      farthest = beyond > farthest ? beyond : farthest;
+    }
+    rows |= nearest < near || farthest > 0 ? 1u << row : 0u;
+  }
+  return rows;
+}
+
+BIN_PICKING_SIMD void raiseToHeights(const float* plane, const float* __restrict x, const float* __restrict y,
+                                     const float* __restrict z, std::size_t count, float* __restrict distances)
+{
+  const float nx = plane[0];
+  const float ny = plane[1];
+  const float nz = plane[2];
+  const float offset = plane[3];
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const float height = nx * x[k] + ny * y[k] + nz * z[k] + offset;
+    distances[k] = height > distances[k] ? height : distances[k];
+  }
+}
+
+/// Four numbers a plane.
+const float* dataOf(const Planes& planes) { return planes.empty() ? nullptr : planes.front().data(); }
+}  // namespace
+
+unsigned meet(const Planes& planes, const Eigen::Vector3f& ray, const Eigen::Vector2f& step, float near, Lanes& lanes)
+{
+  return meetRows(dataOf(planes), planes.size(), ray.data(), step.data(), near, &lanes);
+}
+
+void signedDistances(const Planes& planes, const float* x, const float* y, const float* z, std::size_t count,
+                     float* distances)
+{
+  std::fill_n(distances, count, -NEVER);
+  for (const Eigen::Vector4f& plane : planes)
+    raiseToHeights(plane.data(), x, y, z, count, distances);
+}
+
+namespace
+{
+void raiseToAhead(float* values, std::size_t count, std::size_t ahead)
+{
+  for (std::size_t i = 0; i + ahead < count; ++i)
+    values[i] = values[i + ahead] > values[i] ? values[i + ahead] : values[i];
+}
+}  // namespace
+
+void raiseToWindow(float* values, std::size_t count, std::size_t step, std::size_t window)
+{
+  std::size_t covered = 1;
+  for (; 2 * covered <= window; covered *= 2)
+    raiseToAhead(values, count, covered * step);
+  if (covered < window)
+    raiseToAhead(values, count, (window - covered) * step);
+}
+}  // namespace bin_picking
