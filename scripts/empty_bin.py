@@ -4,7 +4,8 @@
 """Empties the virtual bin: again and again takes the part that the detector, or the truth, holds for the best one.
 
 Usage: empty_bin.py [--by detector|truth] [--detector NAME] [--cell NAME]      the cell must have a rate
-Prints a line per pick. Exit code 1 if parts are left because several attempts in a row took none.
+Prints a line per pick. Exit code 0: the bin is empty, also if it was from the start; 1: parts are left because several attempts
+in a row took none.
 """
 import argparse
 import collections
@@ -12,10 +13,12 @@ import sys
 import time
 
 import rospy
+from bin_picking_perception.msg import ReturnCode
 from bin_picking_perception.srv import TakePart, TakePartRequest, TakePartResponse
 
 from demo_client import START_TIME, Detector, Truth
 
+EMPTY = "empty"                # in place of a request: there is nothing to take
 MAX_FRUITLESS = 6              # attempts in a row that take nothing; then the rest is given up
 OUTCOMES = {TakePartResponse.TAKEN: "taken", TakePartResponse.MISSED: "missed",
             TakePartResponse.DROPPED_BACK: "dropped back", TakePartResponse.NO_SUCH_PART: "nothing there"}
@@ -30,7 +33,7 @@ class ByTruth:
     def choose(self, _):
         scene = self._truth.since(rospy.Time.now())
         if not scene.instances:
-            return None, "the bin is empty"
+            return EMPTY, "the bin is empty"
         best = max(scene.instances, key=lambda part: (part.visible_fraction, -part.pose.position.z))
         return TakePartRequest(select=TakePartRequest.BY_ID, id=best.id), f"{100 * best.visible_fraction:.0f} % visible"
 
@@ -51,7 +54,8 @@ class ByDetector:
             if detection.accepted:
                 candidates.setdefault(detection.index, f"no grasp, score {detection.score:.2f}")
         if not candidates:
-            return None, f"{response.code.name}: {response.code.message}"
+            is_empty = response.code.value == ReturnCode.BIN_EMPTY
+            return EMPTY if is_empty else None, f"{response.code.name}: {response.code.message}"
         index, why = list(candidates.items())[rank % len(candidates)]
         detection = response.detections[index]
         request = TakePartRequest(select=TakePartRequest.BY_POSE, part=detection.part)
@@ -61,14 +65,17 @@ class ByDetector:
 
 
 def empty(chooser, take_part):
-    """Counts of the outcomes, and how many parts are left."""
+    """Counts of the outcomes, and how many parts are left; None: nobody knows."""
     counts = collections.Counter()
     fruitless = 0
     num_left = None
     while num_left != 0 and fruitless < MAX_FRUITLESS and not rospy.is_shutdown():
         start = time.monotonic()
         request, why = chooser.choose(fruitless)
-        if request is None:
+        if request is EMPTY and not num_left:  # else the cell knows of parts that nobody sees
+            print(f"      {why}")
+            return counts, 0
+        if request in (None, EMPTY):
             print(f"      {why}")
             fruitless += 1
             continue
@@ -98,8 +105,8 @@ def main():
     by_truth = arguments.by == "truth"
     chooser = ByTruth(arguments.cell) if by_truth else ByDetector(arguments.cell, arguments.detector)
     counts, num_left = empty(chooser, take_part)
-    print("\n" + ", ".join(f"{count} {outcome}" for outcome, count in counts.items()) +
-          f"; {num_left} left after {time.monotonic() - start:.0f} s")
+    print("\n" + (", ".join(f"{count} {outcome}" for outcome, count in counts.items()) or "nothing tried") +
+          f"; {'unknown how many' if num_left is None else num_left} left after {time.monotonic() - start:.0f} s")
     return 0 if num_left == 0 else 1
 
 

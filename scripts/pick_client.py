@@ -45,5 +45,5 @@ def main():
 if __name__ == "__main__":
     try:
         sys.exit(main())
-    except rospy.ROSException as error:
-        sys.exit(str(error))
+    except (rospy.ROSException, rospy.ServiceException) as error:
+        sys.exit(f"pick_client: {error}")

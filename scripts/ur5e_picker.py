@@ -5,7 +5,8 @@
 
 The same program as src/ros/ur5e_picker.cpp: the arm is a picture and the grip is that of the virtual cell; in a real cell
 these two are the robot's driver and the gripper's. Parameters ~frame, ~speed, ~max_fruitless as there.
-Exit code 0: the bin is empty; 1: parts are left, or an error.
+Where nothing is allowed it shakes the bin and forgets the places that the detector avoids.
+Exit code 0: the bin is empty; 1: parts are left (also where the detector sees none), or an error.
 """
 import collections
 import math
@@ -82,7 +83,10 @@ class Picker:
         self._clear_avoid_list = connect("detector/clear_avoid_list", Trigger)
         self._grip = connect("virtual_cell/grip", Grip)
         self._shake = connect("virtual_cell/shake", Trigger)
-        self._arm = KinematicArm(JOINT_SPEED * rospy.get_param("~speed", 1.0))
+        speed = rospy.get_param("~speed", 1.0)
+        if not 0 < speed < math.inf:
+            raise Problem(f"speed is {speed}; it must be a positive number: 1 is about that of the robot, more is faster")
+        self._arm = KinematicArm(JOINT_SPEED * speed)
         self._frame = rospy.get_param("~frame", "base")
         self._max_fruitless = rospy.get_param("~max_fruitless", 12)
         self._start = time.monotonic()
@@ -96,7 +100,7 @@ class Picker:
         while fruitless < self._max_fruitless and not rospy.is_shutdown():
             answer = self._ask()
             if answer.code.value == ReturnCode.BIN_EMPTY:
-                return True
+                return self._is_empty(answer.code)
             fruitless += 1
             if answer.grasps:
                 if self._pick(answer.grasps[0]):
@@ -105,8 +109,20 @@ class Picker:
             print(f"      {answer.code.name}: {answer.code.message} ({answer.summary})", flush=True)
             self._causes[answer.code.name] += 1
             if answer.code.value > 0:  # nothing is allowed: the parts have to lie otherwise
-                print(f"      {self._shake().message}", flush=True)
+                shaken = self._shake()
+                if not shaken.success:
+                    raise Problem(f"The bin could not be shaken: {shaken.message}")
+                print(f"      {shaken.message}", flush=True)
                 self._clear_avoid_list()  # what failed lies elsewhere now
+        print(f"      Given up: {self._max_fruitless} attempts in a row took nothing (max_fruitless).")
+        return False
+
+    def _is_empty(self, code):
+        """The detector tells by what is measured, the gripper by what it took: a bin is empty where they agree."""
+        if not self._num_left:
+            return True
+        print(f"      {code.name}: {code.message}. But {self._num_left} parts are left, which the sensor does not measure"
+              " or that lean on the walls; look into the bin.")
         return False
 
     def summary(self):

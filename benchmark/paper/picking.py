@@ -10,7 +10,7 @@ from figures import Share
 from tables import PUBLISHED, Table, number, published
 
 PAPER_PART = "three_way_tube"
-OUTCOMES = ("taken", "missed", "collision")
+OUTCOMES = ("taken", "missed", "collision", "another_part")
 CURE = "give a file that `benchmark_picking PART_DIR... --gripper FILE.yaml --json FILE` of this version has written"
 # Which bins are filled, how many at most and where things are kept: bins that differ in nothing else are one row.
 NO_SETTING = ("--seeds", "--json", "--picks", "--threads", "--models")
@@ -189,9 +189,10 @@ def notes(rows, ways):
     return said + [
         "The virtual cell judges a grip by the true geometry, not by what planned it: the gripper goes straight in,"
         " closes and comes straight out; touching a part, the bin or the table where it must not is a collision, and"
-        " holding nothing, or not as meant, or outside of the friction cone, is a miss. Only a part that is taken"
-        " without any collision is a success. Nothing slips, tips or rolls, and the description of the gripper is"
-        " exact: a real cell is less kind.",
+        " holding nothing, or not as meant, or outside of the friction cone, is a miss; so is taking a part where the"
+        " detection's own kind does not lie within 25 mm. Only a part that is taken without any collision is a"
+        " success. Nothing slips, tips or rolls, and the description of the gripper is exact: a real cell is less"
+        " kind.",
         "A shake: where no grasp is allowed, nothing is tried; the bin is shaken, what is left in it falls anew, and it"
         f" goes on. That is no failure and no pick: here {shakes} shakes beside {attempts} picks"
         f" ({number(shakes / max(1, attempts), 2)} a pick). The paper tells of none and does not say what was done"

@@ -55,9 +55,13 @@ std::vector<Detection> trueDetections(const CellScan& scan, const VirtualCell& c
   return detections;
 }
 
-PickOutcome outcomeOf(const GripVerdict& verdict)
+/// As a cell would report it that knows what it holds: where a part was seen that is not there, none is looked for
+/// again.
+PickOutcome outcomeOf(const Attempt& attempt)
 {
-  switch (verdict.outcome)
+  if (attempt.another_part)
+    return PickOutcome::Missed;
+  switch (attempt.verdict.outcome)
   {
     case GripVerdict::Outcome::Taken:
       return PickOutcome::Picked;
@@ -134,18 +138,16 @@ private:
     const CellScan scan = cell_.scan(result_.seed * 1000 + static_cast<std::uint32_t>(clouds_));
     const DetectionResult found = detect(scan);
     const GraspPlan planned = plan(found);
-    result_.left = leftovers(scan, cell_, place_.detector, found, planned);
     now_ += planned.grasps.empty() ? WAIT : CYCLE;
     avoided_.tick(now_);
-    if (planned.grasps.empty())
-    {
-      if (place_.settings.shake)
-        shake();
-      return false;
-    }
-    const PlannedGrasp& best = planned.grasps.front();
-    attempt(best, found.detections[best.detection], scan);
-    return true;
+    const bool is_allowed = !planned.grasps.empty();
+    if (is_allowed)
+      attempt(planned.grasps.front(), found.detections[planned.grasps.front().detection], scan);
+    // After the attempt, for what it took is not left; before the shake, which gives all parts other ids.
+    result_.left = leftovers(scan, cell_, place_.detector, found, planned);
+    if (!is_allowed && place_.settings.shake)
+      shake();
+    return is_allowed;
   }
 
   void shake()
@@ -171,8 +173,11 @@ private:
     result_.judging_seconds.push_back(clock.seconds());
     attempt.called_free = grasp.vouched_for && attempt.verdict.outcome == GripVerdict::Outcome::Collision;
     const bool is_taken = attempt.verdict.outcome == GripVerdict::Outcome::Taken;
-    failures_ = is_taken ? 0 : failures_ + 1;
-    avoided_.report(outcomeOf(attempt.verdict), middleInBin(detection), now_, detection.part);
+    attempt.another_part = is_taken && !meant;
+    if (attempt.another_part)
+      attempt.verdict.what = "No " + detection.part + " lies where it was detected. " + attempt.verdict.what;
+    failures_ = attempt.succeeded() ? 0 : failures_ + 1;
+    avoided_.report(outcomeOf(attempt), middleInBin(detection), now_, detection.part);
     if (is_taken)
       cell_.remove(attempt.verdict.id);
     result_.attempts.push_back(std::move(attempt));

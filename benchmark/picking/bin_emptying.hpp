@@ -28,6 +28,10 @@ struct Attempt
   double rotation_error = 0;  ///< rad, symmetry taken away
   simulation::GripVerdict verdict;
   bool called_free = false;  ///< a collision that the answer had vouched against
+  /// Something was taken, but no part of the kind lies where the detection says: luck, and no success.
+  bool another_part = false;
+
+  bool succeeded() const { return verdict.outcome == simulation::GripVerdict::Outcome::Taken && !another_part; }
 };
 
 /// One bin, from full to the end.
@@ -45,11 +49,11 @@ struct Emptying
 
 struct EmptyingSettings
 {
-  int max_fruitless = 12;  ///< clouds in a row without an allowed grasp, or shakes without a part taken between them
-  bool shake = true;      ///< the bin is shaken where nothing is allowed
-  int max_failures = 10;  ///< attempts in a row that fail, after which the bin is given up
-  int max_picks = 0;      ///< attempts in one bin; 0: no limit
-  bool truth = false;     ///< detections are replaced by the true poses
+  int max_fruitless = 12;  ///< clouds in a row without an allowed grasp, after which the bin is given up
+  bool shake = true;       ///< the bin is shaken where nothing is allowed
+  int max_failures = 10;   ///< attempts in a row that fail, after which the bin is given up
+  int max_picks = 0;       ///< attempts in one bin; 0: no limit
+  bool truth = false;      ///< detections are replaced by the true poses
   simulation::GripTrialParameters grip;
 };
 
@@ -70,8 +74,8 @@ Emptying emptyBin(simulation::VirtualCell& cell, const std::vector<int>& counts,
 std::optional<std::size_t> trueInstance(const Detection& detection, const simulation::CellScan& scan,
                                         const simulation::VirtualCell& cell, const Detector& detector);
 
-/// Why the parts of this scan were not taken: "not_detected"; "allowed", where a grasp is still offered; else the cause
-/// that ruled out most of their grasps.
+/// Why the parts of this scan that are still in the bin were not taken: "not_detected"; "allowed", where a grasp is
+/// still offered; else the cause that ruled out most of their grasps.
 std::map<std::string, int> leftovers(const simulation::CellScan& scan, const simulation::VirtualCell& cell,
                                      const Detector& detector, const DetectionResult& result, const GraspPlan& plan);
 }  // namespace bin_picking::picking

@@ -10,6 +10,11 @@ namespace
 {
 using nlohmann::json;
 
+const char* outcomeText(const Attempt& attempt)
+{
+  return attempt.another_part ? "another_part" : toString(attempt.verdict.outcome);
+}
+
 json toJson(const Attempt& attempt)
 {
   const simulation::GripVerdict& verdict = attempt.verdict;
@@ -22,7 +27,7 @@ json toJson(const Attempt& attempt)
           {"score", attempt.score},
           {"center_error", attempt.center_error},
           {"rotation_error", attempt.rotation_error},
-          {"outcome", toString(verdict.outcome)},
+          {"outcome", outcomeText(attempt)},
           {"cause", causeOf(attempt)},
           {"id", verdict.id},
           {"final_opening", verdict.final_opening},

@@ -57,9 +57,12 @@ std::map<std::string, int> leftovers(const simulation::CellScan& scan, const sim
   for (std::size_t d = 0; d < result.detections.size(); ++d)
     if (const auto instance = trueInstance(result.detections[d], scan, cell, detector))
       detections[*instance].insert(d);
+  const std::vector<simulation::Body> bodies = cell.bodies();
   std::map<std::string, int> causes;
-  for (const std::set<std::size_t>& found : detections)
-    ++causes[causeFor(plan, found)];
+  for (std::size_t k = 0; k < detections.size(); ++k)
+    if (std::any_of(bodies.begin(), bodies.end(),
+                    [id = scan.instances[k].id](const simulation::Body& body) { return body.id == id; }))
+      ++causes[causeFor(plan, detections[k])];
   return causes;
 }
 }  // namespace bin_picking::picking

@@ -116,9 +116,8 @@ std::shared_ptr<const TrainedModel> modelOf(const PartDefinition& part, const Be
 /// One line, so that a long run can be followed.
 std::string summary(const Emptying& bin)
 {
-  const auto taken = std::count_if(bin.attempts.begin(), bin.attempts.end(), [](const Attempt& attempt) {
-    return attempt.verdict.outcome == simulation::GripVerdict::Outcome::Taken;
-  });
+  const auto taken = std::count_if(bin.attempts.begin(), bin.attempts.end(),
+                                   [](const Attempt& attempt) { return attempt.succeeded(); });
   return std::to_string(taken) + " of " + std::to_string(bin.filled) + " parts taken in " +
          std::to_string(bin.attempts.size()) + " attempts";
 }

@@ -14,7 +14,6 @@ namespace bin_picking::picking
 namespace
 {
 using simulation::GripVerdict;
-using tools::fixed;
 
 std::vector<Attempt> attemptsOf(const PartStudy& part)
 {
@@ -42,7 +41,7 @@ Ratio successes(const std::vector<Attempt>& attempts)
 {
   Ratio ratio;
   for (const Attempt& attempt : attempts)
-    ratio.count(attempt.verdict.outcome == GripVerdict::Outcome::Taken);
+    ratio.count(attempt.succeeded());
   return ratio;
 }
 
@@ -119,7 +118,7 @@ void writeDetails(std::ostream& out, const PartStudy& part)
   }
   out << "\nFailures:\n\n";
   for (const Attempt& a : attemptsOf(part))
-    if (a.verdict.outcome != GripVerdict::Outcome::Taken)
+    if (!a.succeeded())
       out << "- seed " << a.seed << ", cloud " << a.cloud << ", " << a.part << "/" << a.grasp << ", tilt "
           << roundedText(a.tilt * 180 / M_PI, 0) << " deg, pose off by " << roundedText(1000 * a.center_error, 1)
           << " mm and " << roundedText(a.rotation_error * 180 / M_PI, 1) << " deg"
@@ -130,6 +129,8 @@ void writeDetails(std::ostream& out, const PartStudy& part)
 std::string causeOf(const Attempt& attempt)
 {
   const GripVerdict& verdict = attempt.verdict;
+  if (attempt.another_part)
+    return "another part";
   if (verdict.outcome == GripVerdict::Outcome::Taken)
     return "taken";
   if (verdict.outcome == GripVerdict::Outcome::Missed)

@@ -59,8 +59,9 @@ struct Detection
 enum class DetectionCode
 {
   Ok = 0,    ///< at least one detection
-  BinEmpty,  ///< nothing measured inside the limits above the floor
-  NoMatch    ///< something is there, nothing was recognised
+  BinEmpty,  ///< almost nothing is measured inside the limits but the bin's walls, and enough of its floor
+  NoMatch,   ///< something is there, nothing was recognised
+  BinUnseen  ///< almost nothing is measured inside the limits, and too little of the floor to call the bin empty
 };
 
 struct StageTime

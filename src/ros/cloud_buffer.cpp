@@ -10,6 +10,7 @@ void CloudBuffer::store(const sensor_msgs::PointCloud2ConstPtr& cloud)
     const std::lock_guard<std::mutex> lock(mutex_);
     latest_ = cloud;
     ++num_received_;
+    last_received_ = Clock::now();
   }
   changed_.notify_all();
 }
@@ -26,10 +27,17 @@ std::uint64_t CloudBuffer::numReceived() const
   return num_received_;
 }
 
-sensor_msgs::PointCloud2ConstPtr CloudBuffer::waitForStamp(const ros::Time& earliest, Clock::time_point until) const
+CloudBuffer::Clock::time_point CloudBuffer::lastReceived() const
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return last_received_;
+}
+
+sensor_msgs::PointCloud2ConstPtr CloudBuffer::waitForStamp(const ros::Time& earliest, std::uint64_t num_seen,
+                                                           Clock::time_point until) const
 {
   std::unique_lock<std::mutex> lock(mutex_);
-  const auto arrived = [&] { return latest_ && latest_->header.stamp >= earliest; };
+  const auto arrived = [&] { return latest_ && num_received_ > num_seen && latest_->header.stamp >= earliest; };
   changed_.wait_until(lock, until, [&] { return closed_ || arrived(); });
   return !closed_ && arrived() ? latest_ : nullptr;
 }

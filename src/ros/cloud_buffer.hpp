@@ -27,8 +27,14 @@ public:
   /// Number of clouds that have come so far.
   std::uint64_t numReceived() const;
 
-  /// Waits for a cloud stamped at or after `earliest`; nullptr once `until` has passed or the buffer is closed.
-  sensor_msgs::PointCloud2ConstPtr waitForStamp(const ros::Time& earliest, Clock::time_point until) const;
+  /// When the newest cloud came; the start of time if none has.
+  Clock::time_point lastReceived() const;
+
+  /// Waits for a cloud that is stamped at or after `earliest` and is none of the `num_seen` first: where the sensor's
+  /// clock is ahead, the stamp alone would let one pass that was there before. nullptr once `until` has passed or the
+  /// buffer is closed.
+  sensor_msgs::PointCloud2ConstPtr waitForStamp(const ros::Time& earliest, std::uint64_t num_seen,
+                                                Clock::time_point until) const;
 
   /// Waits for any cloud but the `num_seen` first; nullptr once the buffer is closed. \param num_seen is brought up to
   /// date
@@ -43,6 +49,7 @@ private:
   mutable std::condition_variable changed_;
   sensor_msgs::PointCloud2ConstPtr latest_;
   std::uint64_t num_received_ = 0;
+  Clock::time_point last_received_;
   bool closed_ = false;
 };
 }  // namespace bin_picking_ros

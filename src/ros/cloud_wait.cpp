@@ -19,11 +19,38 @@ std::string secondsText(double seconds)
   return text.str();
 }
 
+void requireCredibleStamp(const ros::Time& stamp, const ros::Time& now)
+{
+  if (stamp.isZero())
+    throw RequestError(ReturnCode::STALE_CLOUD,
+                       "The cloud carries no time, so that nobody knows how old it is and where the camera was.");
+  const double lead = secondsBetween(now, stamp);
+  if (lead > MAX_CLOCK_LEAD)
+    throw RequestError(ReturnCode::STALE_CLOUD, "The cloud is stamped " + secondsText(lead) +
+                                                    " in the future, at most " + secondsText(MAX_CLOCK_LEAD) +
+                                                    " are allowed: the clock of the sensor's computer is ahead.");
+}
+
+namespace
+{
+/// Why no cloud was good enough, where at least one has come.
+[[noreturn]] void failWithout(const sensor_msgs::PointCloud2& latest, const CloudWish& wish, bool is_new)
+{
+  requireCredibleStamp(latest.header.stamp, ros::Time::now());
+  const std::string start = "No cloud exposed after the call came within " + secondsText(wish.seconds);
+  if (!is_new)
+    throw RequestError(ReturnCode::NO_CLOUD, start + "; the newest had come before the call.");
+  throw RequestError(ReturnCode::NO_CLOUD, start + "; the newest is stamped " +
+                                               secondsText(secondsBetween(latest.header.stamp, wish.called)) +
+                                               " before the call.");
+}
+}  // namespace
+
 PointCloud2ConstPtr waitForNew(const CloudBuffer& clouds, const CloudWish& wish)
 {
   const auto until = wish.start + std::chrono::duration_cast<CloudBuffer::Clock::duration>(
                                       std::chrono::duration<double>(wish.seconds));
-  if (PointCloud2ConstPtr cloud = clouds.waitForStamp(wish.called, until))
+  if (PointCloud2ConstPtr cloud = clouds.waitForStamp(wish.called, wish.num_seen, until))
     return cloud;
   if (clouds.closed())
     throw RequestError(ReturnCode::NOT_READY, "The node is shutting down.");
@@ -31,10 +58,7 @@ PointCloud2ConstPtr waitForNew(const CloudBuffer& clouds, const CloudWish& wish)
   if (!latest)
     throw RequestError(ReturnCode::NO_CLOUD,
                        "No cloud has come on " + wish.topic + " yet; " + secondsText(wish.seconds) + " were waited.");
-  throw RequestError(ReturnCode::NO_CLOUD, "No cloud exposed after the call came within " + secondsText(wish.seconds) +
-                                               "; the newest is stamped " +
-                                               secondsText(secondsBetween(latest->header.stamp, wish.called)) +
-                                               " before the call.");
+  failWithout(*latest, wish, clouds.numReceived() > wish.num_seen);
 }
 
 PointCloud2ConstPtr takeLatest(const CloudBuffer& clouds, const CloudWish& wish)
@@ -42,8 +66,7 @@ PointCloud2ConstPtr takeLatest(const CloudBuffer& clouds, const CloudWish& wish)
   PointCloud2ConstPtr cloud = clouds.latest();
   if (!cloud)
     throw RequestError(ReturnCode::NO_CLOUD, "No cloud has come on " + wish.topic + " yet.");
-  if (cloud->header.stamp.isZero())
-    throw RequestError(ReturnCode::STALE_CLOUD, "The newest cloud carries no time, so that its age is not known.");
+  requireCredibleStamp(cloud->header.stamp, ros::Time::now());
   const double age = secondsBetween(cloud->header.stamp, wish.called);
   if (age > wish.seconds)
     throw RequestError(ReturnCode::STALE_CLOUD, "The newest cloud is " + secondsText(age) + " old; at most " +

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "bin_picking_perception/common/error.hpp"
@@ -38,18 +39,60 @@ std::optional<bin_picking::Robot> loadOptionalRobot(const std::string& file)
     return std::nullopt;
   return bin_picking::loadRobot(resolveResource(file));
 }
+
+/// Where clouds are exposed on demand, none comes as long as nobody asks.
+double maxSilence(const NodeParameters& parameters)
+{
+  return parameters.process == ProcessMode::Continuous ? parameters.cloud_timeout
+                                                       : std::numeric_limits<double>::infinity();
+}
 }  // namespace
 
 struct DetectorNode::Job
 {
-  explicit Job(double deadline_seconds) : deadline(deadline_seconds) {}
+  Job(const CloudBuffer& clouds, double deadline_seconds) : num_seen(clouds.numReceived()), deadline(deadline_seconds)
+  {}
+
+  /// Every cloud comes in here, whoever asked for it. \throws RequestError STALE_CLOUD: its stamp is not credible
+  void take(PointCloud2ConstPtr taken)
+  {
+    cloud = std::move(taken);
+    requireCredibleStamp(cloud->header.stamp, ros::Time::now());
+  }
 
   double elapsed() const { return std::chrono::duration<double>(CloudBuffer::Clock::now() - start).count(); }
 
+  /// Seconds until the deadline.
+  double left() const
+  {
+    return deadline > 0 ? std::max(0.0, deadline - elapsed()) : std::numeric_limits<double>::infinity();
+  }
+
   ros::Time called = ros::Time::now();
   CloudBuffer::Clock::time_point start = CloudBuffer::Clock::now();
-  double deadline;  ///< seconds from the start; 0: none
+  std::uint64_t num_seen;  ///< clouds that had come by then
+  double deadline;         ///< seconds from the start; 0: none
   PointCloud2ConstPtr cloud;
+  bool is_for_all = false;     ///< nobody has asked: the topics are what it is done for
+  bool has_own_frame = false;  ///< of the answer
+
+  /// Whether an answer to anybody would have failed by this, so that no older result may stand on the topics.
+  bool isFaultForAll(const ReturnCode& code) const
+  {
+    switch (code.value)
+    {
+      case ReturnCode::BAD_CLOUD:
+      case ReturnCode::UNIT_SUSPECT:
+      case ReturnCode::STALE_CLOUD:  // with a cloud that was taken: its stamp, not the wishes of the request
+        return true;
+      case ReturnCode::TF_UNKNOWN_FRAME:
+      case ReturnCode::TF_DISCONNECTED:
+      case ReturnCode::BAD_TRANSFORM:
+        return is_for_all || (!has_own_frame && left() > 0);  // a deadline cuts the waiting for tf
+      default:
+        return is_for_all;
+    }
+  }
 };
 
 DetectorNode::DetectorNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
@@ -68,8 +111,8 @@ DetectorNode::DetectorNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
   loader_ = std::make_unique<ModelLoader>(
       ModelLoader::Job{parts_, parameters_.training, cache, parameters_.detector.num_threads},
       [this](const ModelLoader::Models& models) { setModels(models); });
-  diagnostics_ = std::make_unique<NodeDiagnostics>(nh_, private_nh, clouds_, *loader_,
-                                                   parameters_.detector.input.max_plausible_depth);
+  diagnostics_ = std::make_unique<NodeDiagnostics>(
+      nh_, private_nh, clouds_, *loader_, parameters_.detector.input.max_plausible_depth, maxSilence(parameters_));
   tuning_ = std::make_unique<Tuning>(private_nh, parameters_, [this](const NodeParameters& p) { retune(p); });
   cloud_subscriber_ = nh_.subscribe("points", 1, &CloudBuffer::store, &clouds_, ros::TransportHints().tcpNoDelay());
   reports_ = std::make_unique<ReportServices>(private_nh, memory_);
@@ -84,8 +127,8 @@ DetectorNode::~DetectorNode()
   clouds_.close();
   frames_.close();
   turns_.close();
+  service_spinner_->stop();  // before the service goes, and with it the connections: who waited is told why
   service_.shutdown();
-  service_spinner_->stop();
   if (continuous_thread_.joinable())
     continuous_thread_.join();
   tuning_.reset();
@@ -136,7 +179,8 @@ std::shared_ptr<const PickPipeline> DetectorNode::readyPipeline() const
 
 bool DetectorNode::handleRequest(Request& request, Response& response)
 {
-  Job job(request.deadline > ros::Duration(0) ? request.deadline.toSec() : parameters_.deadline);
+  Job job(clouds_, request.deadline > ros::Duration(0) ? request.deadline.toSec() : parameters_.deadline);
+  job.has_own_frame = !request.output_frame.empty();
   try
   {
     response = answer(request, job);
@@ -145,7 +189,7 @@ bool DetectorNode::handleRequest(Request& request, Response& response)
   {
     response = fail(translateException(std::current_exception()), job);
   }
-  if (job.cloud)
+  if (job.cloud && !job.cloud->header.stamp.isZero())
     response.age = durationBetween(job.cloud->header.stamp, ros::Time::now());
   return true;  // false would reach the caller without any data
 }
@@ -156,8 +200,8 @@ DetectorNode::Response DetectorNode::answer(const Request& request, Job& job)
   grippers_.find(request.gripper);
   const std::shared_ptr<const PickPipeline> pipeline = readyPipeline();
   pipeline->requireParts(request.part_ids);
-  job.cloud = acquire(request, job);
-  const OutputFrame output = frames_.output(job.cloud->header, request.output_frame);
+  job.take(acquire(request, job));
+  const OutputFrame output = frames_.output(job.cloud->header, request.output_frame, job.left());
 
   PickRequest pick;
   pick.parts = request.part_ids;
@@ -172,7 +216,7 @@ DetectorNode::Response DetectorNode::answer(const Request& request, Job& job)
 
 PointCloud2ConstPtr DetectorNode::acquire(const Request& request, const Job& job) const
 {
-  CloudWish wish{job.called, job.start, 0, cloud_subscriber_.getTopic()};
+  CloudWish wish{job.called, job.start, job.num_seen, 0, cloud_subscriber_.getTopic()};
   if (request.acquisition == Request::WAIT_NEW)
   {
     wish.seconds = job.deadline > 0 ? std::min(job.deadline, parameters_.cloud_timeout) : parameters_.cloud_timeout;
@@ -199,18 +243,20 @@ Turns::Turn DetectorNode::waitForTurn(const Job& job)
 PickResult DetectorNode::process(const PickPipeline& pipeline, PickRequest pick, const OutputFrame& output,
                                  const Job& job, PickMemory::Channel channel)
 {
-  pick.bin = frames_.bin(job.cloud->header);
-  pick.T_base_camera = frames_.robotBase(job.cloud->header);
+  pick.bin = frames_.bin(job.cloud->header, job.left());
+  pick.T_base_camera = frames_.robotBase(job.cloud->header, job.left());
   const bin_picking::Pose T_fixed_camera = CellFrames::fixedFrame(pick.bin, pick.T_base_camera);
   const Turns::Turn turn = waitForTurn(job);
   pick.keep_segmentation = publisher_.wantsSegmentation();
   if (job.deadline > 0)
-    pick.deadline = std::max(job.deadline - job.elapsed(), 1e-9);  // 0 would be none
+    pick.deadline = std::max(job.left(), 1e-9);  // 0 would be none
   pick.avoided = avoidQuery(memory_, T_fixed_camera);
   PickResult result = pipeline.run(*job.cloud, pick);
   result.avoided = placesInCamera(memory_, T_fixed_camera);
   memory_.remember(nameGrasps(result, memory_.nextAnswer(), T_fixed_camera), channel);
-  publisher_.publish(result, output);
+  // Nothing that is ready by one's own deadline is no news for others.
+  if (job.is_for_all || result.code.value != ReturnCode::DEADLINE)
+    publisher_.publish(result, output);
   diagnostics_->note(result.code, result.detection.timing, result.detection.total_seconds);
   return result;
 }
@@ -223,7 +269,8 @@ DetectorNode::Response DetectorNode::fail(const ReturnCode& code, const Job& job
   if (job.cloud)
   {
     response.header = job.cloud->header;
-    publisher_.publishFailure(code, job.cloud->header);
+    if (job.isFaultForAll(code))
+      publisher_.publishFailure(code, job.cloud->header);
   }
   diagnostics_->note(code, {}, job.elapsed());
   return response;
@@ -234,12 +281,13 @@ void DetectorNode::processContinuously()
   std::uint64_t num_seen = clouds_.numReceived();
   while (const PointCloud2ConstPtr cloud = clouds_.waitForNext(num_seen))
   {
-    Job job(parameters_.deadline);
-    job.cloud = cloud;
+    Job job(clouds_, parameters_.deadline);
+    job.is_for_all = true;
     try
     {
+      job.take(cloud);
       const std::shared_ptr<const PickPipeline> pipeline = readyPipeline();
-      process(*pipeline, PickRequest(), frames_.output(cloud->header, ""), job, PickMemory::Channel::Topic);
+      process(*pipeline, PickRequest(), frames_.output(cloud->header, "", job.left()), job, PickMemory::Channel::Topic);
     }
     catch (...)
     {

@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "bin_picking_perception/common/error.hpp"
 
 namespace bin_picking_ros
 {
@@ -15,11 +18,20 @@ namespace
 {
 constexpr double MOVING_RATE = 25;   // Hz
 constexpr double STANDING_RATE = 5;  // Hz: who starts later sees the arm too
+
+double checkedSpeed(double speed)
+{
+  if (!(speed > 0) || !std::isfinite(speed))
+    throw bin_picking::ParameterError("the speed of the arm is " + std::to_string(speed) +
+                                      " rad/s; it must be a positive number; set speed to 1 for about that of the "
+                                      "robot, to more for faster");
+  return speed;
+}
 }  // namespace
 
 KinematicArm::KinematicArm(ros::NodeHandle nh, const bin_picking::Robot& robot, double speed)
     : robot_(robot),
-      speed_(speed),
+      speed_(checkedSpeed(speed)),
       publisher_(nh.advertise<sensor_msgs::JointState>("joint_states", 10)),
       joints_(robot.home),
       timer_(

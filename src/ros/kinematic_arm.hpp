@@ -18,6 +18,7 @@ class KinematicArm
 {
 public:
   /// Stands at the robot's home. \param speed of the fastest joint, rad/s
+  /// \throws bin_picking::ParameterError the speed is not positive and finite
   KinematicArm(ros::NodeHandle nh, const bin_picking::Robot& robot, double speed);
 
   /// Moves all joints evenly; comes back when it is there. Between two waypoints of a grasp the joints' straight line

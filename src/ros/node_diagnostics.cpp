@@ -4,9 +4,11 @@
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
+#include <chrono>
 #include <exception>
 
 #include "cloud_conversion.hpp"
+#include "cloud_wait.hpp"
 #include "time_difference.hpp"
 
 namespace bin_picking_ros
@@ -21,10 +23,11 @@ constexpr std::size_t SUMMARY_STRIDE = 8;  // 36 000 of 2.3 million points: far 
 }  // namespace
 
 NodeDiagnostics::NodeDiagnostics(ros::NodeHandle nh, const ros::NodeHandle& private_nh, const CloudBuffer& clouds,
-                                 const ModelLoader& loader, double max_depth)
+                                 const ModelLoader& loader, double max_depth, double max_silence)
     : clouds_(clouds),
       loader_(loader),
       max_depth_(max_depth),
+      max_silence_(max_silence),
       time_before_(ros::WallTime::now()),
       updater_(nh, private_nh, private_nh.getNamespace())
 {
@@ -65,6 +68,7 @@ void NodeDiagnostics::describeInput(DiagnosticStatusWrapper& status)
   const std::uint64_t num_received = clouds_.numReceived();
   const double period = (now - time_before_).toSec();
   const double rate = period > 0 ? static_cast<double>(num_received - num_received_before_) / period : 0.0;
+  const bool has_come = num_received > num_received_before_;
   num_received_before_ = num_received;
   time_before_ = now;
 
@@ -91,12 +95,23 @@ void NodeDiagnostics::describeInput(DiagnosticStatusWrapper& status)
     else if (summary.validShare() < MIN_VALID_SHARE)
       status.summary(DiagnosticStatus::WARN, "Few points of the cloud are valid.");
     else
-      status.summary(DiagnosticStatus::OK, "Clouds come in.");
+      describeArrival(has_come, status);
   }
   catch (...)
   {
     status.summary(DiagnosticStatus::ERROR, translateException(std::current_exception()).message);
   }
+}
+
+/// Of a cloud that is as it should be.
+void NodeDiagnostics::describeArrival(bool has_come, DiagnosticStatusWrapper& status) const
+{
+  const double silence = std::chrono::duration<double>(CloudBuffer::Clock::now() - clouds_.lastReceived()).count();
+  if (has_come)
+    status.summary(DiagnosticStatus::OK, "Clouds come in.");
+  else
+    status.summary(silence > max_silence_ ? DiagnosticStatus::WARN : DiagnosticStatus::OK,
+                   "The last cloud came " + secondsText(silence) + " ago.");
 }
 
 void NodeDiagnostics::describeResult(DiagnosticStatusWrapper& status)

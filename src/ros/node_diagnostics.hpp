@@ -22,8 +22,9 @@ class NodeDiagnostics
 {
 public:
   /// The arguments must outlive it. \param max_depth median depth above which a cloud looks like millimetres, metres
+  /// \param max_silence how long no cloud may come until it is a warning, seconds; infinite: clouds come on demand
   NodeDiagnostics(ros::NodeHandle nh, const ros::NodeHandle& private_nh, const CloudBuffer& clouds,
-                  const ModelLoader& loader, double max_depth);
+                  const ModelLoader& loader, double max_depth, double max_silence);
 
   /// Notes the outcome of a request. Thread-safe.
   void note(const ReturnCode& code, const std::vector<bin_picking::StageTime>& timing, double total_seconds);
@@ -38,11 +39,13 @@ private:
 
   void describeModels(diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void describeInput(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void describeArrival(bool has_come, diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void describeResult(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const CloudBuffer& clouds_;
   const ModelLoader& loader_;
   double max_depth_;
+  double max_silence_;
   std::uint64_t num_received_before_ = 0;
   ros::WallTime time_before_;
   std::mutex mutex_;

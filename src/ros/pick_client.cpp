@@ -35,7 +35,10 @@ int main(int argc, char** argv)
   do  // training a part for the first time takes a while
   {
     if (!client.call(call))
+    {
+      std::printf("The service %s is gone; look whether the detector still runs.\n", client.getService().c_str());
       return 1;
+    }
   } while (call.response.code.value == ReturnCode::NOT_READY && ros::WallDuration(1.0).sleep() && ros::ok());
 
   const ReturnCode& code = call.response.code;

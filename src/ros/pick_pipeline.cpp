@@ -18,13 +18,18 @@ using bin_picking::DetectionCode;
 using bin_picking::DetectionResult;
 using bin_picking::GraspSelection;
 
+double secondsSince(std::chrono::steady_clock::time_point start)
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 /// Runs `work` and notes the time it took.
 template <typename Work>
 auto timed(const std::string& stage, std::vector<bin_picking::StageTime>& timing, Work work)
 {
   const auto start = std::chrono::steady_clock::now();
   auto result = work();
-  timing.push_back({stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+  timing.push_back({stage, secondsSince(start)});
   return result;
 }
 
@@ -56,6 +61,8 @@ ReturnCode judge(const DetectionResult& detection, const GraspSelection& selecti
       return makeReturnCode(ReturnCode::BIN_EMPTY, detection.message);
     case DetectionCode::NoMatch:
       return makeReturnCode(ReturnCode::NO_MATCH, detection.message);
+    case DetectionCode::BinUnseen:
+      return makeReturnCode(ReturnCode::BAD_CLOUD, detection.message);
     case DetectionCode::Ok:
       break;
   }
@@ -116,7 +123,8 @@ PickResult PickPipeline::run(const sensor_msgs::PointCloud2& cloud, const PickRe
   bin_picking::Detector::Request query;
   query.bin = request.bin;
   query.parts = request.parts;
-  query.deadline = request.deadline;
+  if (request.deadline > 0)  // what the conversion has left of it; 0 would be none
+    query.deadline = std::max(request.deadline - secondsSince(start), 1e-9);
   query.keep_segmentation = request.keep_segmentation;
 
   PickResult result;
@@ -129,7 +137,7 @@ PickResult PickPipeline::run(const sensor_msgs::PointCloud2& cloud, const PickRe
   timing.insert(timing.end(), result.detection.timing.begin(), result.detection.timing.end());
   result.selection = timed("grasp planning", timing, [&] { return plan(result, request); });
   result.detection.timing = std::move(timing);
-  result.detection.total_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.detection.total_seconds = secondsSince(start);
   result.code = judge(result.detection, result.selection);
   return result;
 }

@@ -28,7 +28,7 @@ struct PickRequest
 {
   std::vector<std::string> parts;         ///< names; empty: all
   std::optional<bin_picking::Bin> bin;    ///< in the cloud's frame
-  double deadline = 0;                    ///< seconds from now; 0: none
+  double deadline = 0;                    ///< seconds from now, for the detection; 0: none
   std::size_t max_grasps = 0;             ///< at most as many as the parameters allow; 0: that many
   bool accept_undetermined_turn = false;  ///< also grasps of parts whose turn about an axis is not known
   bool keep_segmentation = false;

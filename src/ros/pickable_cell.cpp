@@ -32,6 +32,20 @@ std::vector<CellPart> loadCellParts(const std::vector<std::string>& directories)
   return parts;
 }
 
+/// The errors of the simulation are those of its parameters: here, at work, nobody has given any.
+template <typename Work>
+void simulate(const Work& work)
+{
+  try
+  {
+    work();
+  }
+  catch (const bin_picking::Error& error)
+  {
+    throw PhysicsFailure(std::string("The simulation of the bin failed; call ~refill: ") + error.what());
+  }
+}
+
 Eigen::Vector3d surfaceCenter(const TriangleMesh& mesh)
 {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -71,7 +85,11 @@ void PickableCell::refill(const Progress& progress)
   cell_->fill(parameters_.counts, next_seed_++, progress);
 }
 
-void PickableCell::shake() { cell_->shake(static_cast<std::uint32_t>(luck_.below(1 << 30))); }
+void PickableCell::shake()
+{
+  const auto seed = static_cast<std::uint32_t>(luck_.below(1 << 30));
+  simulate([&] { cell_->shake(seed); });
+}
 
 bin_picking::simulation::CellScan PickableCell::expose()
 {
@@ -99,10 +117,11 @@ PickOutcome::Kind PickableCell::takeGripped(int id)
     return PickOutcome::Kind::Missed;
   if (luck_.uniform(0, 1) < parameters_.drop_probability)
   {
-    cell_->dropAgain(id, static_cast<std::uint32_t>(luck_.below(1 << 30)));
+    const auto seed = static_cast<std::uint32_t>(luck_.below(1 << 30));
+    simulate([&] { cell_->dropAgain(id, seed); });
     return PickOutcome::Kind::DroppedBack;
   }
-  cell_->remove(id);
+  simulate([&] { cell_->remove(id); });
   return PickOutcome::Kind::Taken;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,13 @@ struct GripOutcome
   std::size_t num_left = 0;
 };
 
+/// The physics could not go on, whatever was asked for: the bin is no good until it is filled anew.
+class PhysicsFailure : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
 /// A virtual bin that is filled, scanned and emptied as a cell at work is. The same parameters and the same calls give
 /// the same bits. Not thread-safe.
 class PickableCell
@@ -54,17 +62,18 @@ public:
   /// `progress` ends it and reaches the caller. \throws bin_picking::ParameterError a part does not fit, too many parts
   void refill(const Progress& progress);
 
-  /// All that lies in the bin falls anew, under new ids. \pre filled \throws bin_picking::ParameterError
+  /// All that lies in the bin falls anew, under new ids. \pre filled \throws PhysicsFailure
   void shake();
 
   /// One exposure with noise of its own.
   bin_picking::simulation::CellScan expose();
 
-  /// Fails, or loses the part, as often as the parameters say.
+  /// Fails, or loses the part, as often as the parameters say. \throws PhysicsFailure
   PickOutcome take(int id);
 
   /// Makes a grip and judges it. Fails, or loses the part, as often as the parameters say.
   /// \throws bin_picking::ParameterError no gripper is mounted, a path that no robot can take (see GripJudge)
+  /// \throws PhysicsFailure
   GripOutcome grip(const bin_picking::simulation::GripPath& path);
 
   /// The part whose middle is nearest to that of a part at the pose; none within the tolerance: nothing.

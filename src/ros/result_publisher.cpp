@@ -31,6 +31,7 @@ void ResultPublisher::setMarkerMaker(std::shared_ptr<const MarkerMaker> marker_m
 void ResultPublisher::publish(const PickResult& result, const OutputFrame& output)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
+  last_result_ = output.header.stamp;
   poses_.publish(toPoseArray(result, output));
   detections_.publish(toDetectionArray(result, output));
   grasps_.publish(toGraspArray(result, output));
@@ -44,6 +45,8 @@ void ResultPublisher::publish(const PickResult& result, const OutputFrame& outpu
 void ResultPublisher::publishFailure(const ReturnCode& code, const std_msgs::Header& header)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (!header.stamp.isZero() && header.stamp < last_result_)  // without a time, nobody knows which is newer
+    return;
   geometry_msgs::PoseArray poses;
   poses.header = header;
   poses_.publish(poses);
@@ -57,16 +60,23 @@ void ResultPublisher::publishFailure(const ReturnCode& code, const std_msgs::Hea
   markers_.publish(noMarkers(header));
 }
 
+/// A cloud may be used twice, but tf keeps the first pose of a frame and time, and warns about every other one. So that
+/// the latest is that of the last answer, each goes a nanosecond after the one before.
+ros::Time ResultPublisher::stampFor(const std::string& frame, const ros::Time& cloud)
+{
+  Sent& last = last_sent_[frame];
+  last.tf = last.cloud == cloud ? last.tf + ros::Duration(0, 1) : cloud;
+  last.cloud = cloud;
+  return last.tf;
+}
+
 void ResultPublisher::broadcast(const PickResult& result, const OutputFrame& output)
 {
   std::vector<geometry_msgs::TransformStamped> transforms;
   const auto add = [&](const std::string& name, const bin_picking::Pose& T_camera_frame) {
-    // A cloud may be used twice; tf keeps the first pose of a frame and time, and warns about every other one.
-    ros::Time& last_stamp = last_stamp_[name];
-    if (std::exchange(last_stamp, output.header.stamp) == output.header.stamp)
-      return;
     transforms.emplace_back();
     transforms.back().header = output.header;
+    transforms.back().header.stamp = stampFor(name, output.header.stamp);
     transforms.back().child_frame_id = tf_prefix_ + name;
     transforms.back().transform = toTransformMessage(output.T_output_camera * T_camera_frame);
   };

@@ -29,10 +29,18 @@ public:
 
   void publish(const PickResult& result, const OutputFrame& output);
 
-  /// Replaces the latched results by empty ones with the code: an old pose must not look like an answer.
+  /// Replaces the latched results by empty ones with the code: an old pose must not look like an answer. Nothing
+  /// happens where they are of a newer cloud.
   void publishFailure(const ReturnCode& code, const std_msgs::Header& header);
 
 private:
+  struct Sent
+  {
+    ros::Time cloud;  ///< stamp of the result
+    ros::Time tf;     ///< that it was sent with
+  };
+
+  ros::Time stampFor(const std::string& frame, const ros::Time& cloud);
   void broadcast(const PickResult& result, const OutputFrame& output);
 
   std::string tf_prefix_;
@@ -42,7 +50,8 @@ private:
   ros::Publisher markers_;
   ros::Publisher segmentation_;
   tf2_ros::TransformBroadcaster broadcaster_;
-  std::map<std::string, ros::Time> last_stamp_;  ///< per tf frame
+  ros::Time last_result_;                  ///< stamp of the newest result
+  std::map<std::string, Sent> last_sent_;  ///< per tf frame
   std::shared_ptr<const MarkerMaker> marker_maker_;
   std::mutex mutex_;
 };

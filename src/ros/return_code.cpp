@@ -17,10 +17,11 @@ struct CodeText
   const char* hint;
 };
 
-constexpr std::array<CodeText, 22> CODES = {{
+constexpr std::array<CodeText, 21> CODES = {{
     {ReturnCode::OK, "OK", ""},
     {ReturnCode::PARTIAL, "PARTIAL", "Allow a longer deadline, or choose the preset fast."},
-    {ReturnCode::BIN_EMPTY, "BIN_EMPTY", "Bring the next bin; if parts are left, check the bin's pose and size."},
+    {ReturnCode::BIN_EMPTY, "BIN_EMPTY",
+     "Bring the next bin; if parts are left, check the bin's pose and size and what the sensor measures of the parts."},
     {ReturnCode::NO_MATCH, "NO_MATCH",
      "Stir the bin or move the camera; look at the rejected detections for what was close."},
     {ReturnCode::NO_PICKABLE, "NO_PICKABLE", "Stir the bin; see the summary of reasons, and add grasps to part.yaml."},
@@ -33,7 +34,8 @@ constexpr std::array<CodeText, 22> CODES = {{
      "Check that the camera runs and that the topic points is remapped to its cloud."},
     {ReturnCode::STALE_CLOUD, "STALE_CLOUD", "Trigger the camera, raise max_age, or synchronise the clocks."},
     {ReturnCode::BAD_CLOUD, "BAD_CLOUD",
-     "Let the driver publish an organized cloud with x, y, z as float32 in metres."},
+     "Let the driver publish an organized cloud with x, y, z as float32 in metres; check projector, exposure and "
+     "view."},
     {ReturnCode::NOT_READY, "NOT_READY", "Call again; training a part for the first time takes a while."},
     {ReturnCode::TF_UNKNOWN_FRAME, "TF_UNKNOWN_FRAME", "Check the frame's spelling and who publishes it."},
     {ReturnCode::TF_EXTRAPOLATION, "TF_EXTRAPOLATION",

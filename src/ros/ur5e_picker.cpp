@@ -6,7 +6,8 @@
 //
 // Parameters: ~frame (base: that of the controller, in which URScript is written), ~robot (YAML file), ~speed (1: about
 // that of the robot; more is faster), ~max_fruitless (attempts in a row that take nothing; then the rest is left).
-// Exit code 0: the bin is empty; 1: parts are left, or an error.
+// Where nothing is allowed it shakes the bin and forgets the places that the detector avoids.
+// Exit code 0: the bin is empty; 1: parts are left (also where the detector sees none), or an error.
 #include <bin_picking_perception/GetBestGrasp.h>
 #include <bin_picking_perception/Grip.h>
 #include <bin_picking_perception/ReportPick.h>
@@ -16,6 +17,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -84,7 +86,7 @@ public:
     {
       const GetBestGrasp::Response answer = ask();
       if (answer.code.value == ReturnCode::BIN_EMPTY)
-        return true;
+        return endAtEmptyBin(answer.code);
       ++fruitless;
       if (!answer.grasps.empty())
       {
@@ -97,6 +99,7 @@ public:
       if (answer.code.value > 0)
         shake();
     }
+    std::printf("      Given up: %d attempts in a row took nothing (max_fruitless).\n", max_fruitless_);
     return false;
   }
 
@@ -105,11 +108,24 @@ public:
     std::printf("%d attempts: %d picked", num_attempts_, num_picked_);
     for (const auto& [cause, count] : causes_)
       std::printf(", %d %s", count, cause.c_str());
-    const std::string left = num_attempts_ > 0 ? std::to_string(num_left_) + " left" : "nothing tried";
+    const std::string left = num_left_ ? std::to_string(*num_left_) + " left" : "nothing tried";
     std::printf("; %s after %.0f s\n", left.c_str(), (ros::WallTime::now() - start_).toSec());
   }
 
 private:
+  /// The detector tells by what is measured, the gripper by what it took: a bin is empty where they agree.
+  /// \return whether it is
+  bool endAtEmptyBin(const ReturnCode& code) const
+  {
+    if (num_left_.value_or(0) == 0)
+      return true;
+    std::printf(
+        "      %s: %s. But %u parts are left, which the sensor does not measure or that lean on the walls; look "
+        "into the bin.\n",
+        code.name.c_str(), code.message.c_str(), *num_left_);
+    return false;
+  }
+
   /// The first answer comes when the models are loaded, the bin is full and tf is known; from then on, every error is
   /// one. \throws std::runtime_error an error that a person has to look at
   GetBestGrasp::Response ask()
@@ -157,7 +173,10 @@ private:
   /// Where nothing is allowed, the parts have to lie otherwise; what failed lies elsewhere then.
   void shake()
   {
-    std::printf("      %s\n", call<std_srvs::Trigger>(shake_, {}).message.c_str());
+    const std_srvs::Trigger::Response shaken = call<std_srvs::Trigger>(shake_, {});
+    if (!shaken.success)
+      throw std::runtime_error("The bin could not be shaken: " + shaken.message);
+    std::printf("      %s\n", shaken.message.c_str());
     call<std_srvs::Trigger>(clear_avoid_list_, {});
   }
 
@@ -226,7 +245,7 @@ private:
   bool has_started_ = false;
   int num_attempts_ = 0;
   int num_picked_ = 0;
-  unsigned num_left_ = 0;
+  std::optional<unsigned> num_left_;   ///< as the gripper told at the last attempt
   std::map<std::string, int> causes_;  ///< of what was not a pick
 };
 }  // namespace

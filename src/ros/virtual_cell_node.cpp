@@ -168,6 +168,20 @@ void VirtualCellNode::requireReady() const
     throw RequestError(now.state == State::Filling ? ReturnCode::NOT_READY : ReturnCode::INTERNAL, now.text);
 }
 
+template <typename Work>
+auto VirtualCellNode::act(const Work& work)
+{
+  try
+  {
+    return work();
+  }
+  catch (const PhysicsFailure& failure)
+  {
+    setStatus(State::Failed, failure.what());
+    throw;
+  }
+}
+
 std::string VirtualCellNode::expose()
 {
   std_msgs::Header header;
@@ -242,7 +256,7 @@ bool VirtualCellNode::handleShake(Trigger::Request&, Trigger::Response& response
     const std::lock_guard<std::mutex> lock(cell_mutex_);
     requireReady();  // a refill may have been first
     if (cell_->numLeft() > 0)
-      cell_->shake();
+      act([this] { cell_->shake(); });
     response.message = "Shaken: " + partsText(cell_->numLeft()) + " in the bin fell anew.";
     response.success = 1;
   }
@@ -272,7 +286,7 @@ VirtualCellNode::TakePart::Response VirtualCellNode::takePart(const TakePart::Re
   const std::optional<int> id = T_camera_object ? partAt(*T_camera_object, request) : request.id;
   if (!id)
     return nothingThere(request, cell_->numLeft());
-  return toAnswer(cell_->take(*id), *id);
+  return toAnswer(act([&] { return cell_->take(*id); }), *id);
 }
 
 bool VirtualCellNode::handleGrip(Grip::Request& request, Grip::Response& response)
@@ -303,7 +317,7 @@ VirtualCellNode::Grip::Response VirtualCellNode::grip(const Grip::Request& reque
   std::optional<int> meant;
   if (T_camera_meant)
     meant = cell_->partAt(*T_camera_meant, request.part, parameters_->tolerance);
-  return toAnswer(cell_->grip(path), meant);
+  return toAnswer(act([&] { return cell_->grip(path); }), meant);
 }
 
 bin_picking::Pose VirtualCellNode::poseInCamera(const geometry_msgs::PoseStamped& pose) const

@@ -65,6 +65,10 @@ private:
   /// \throws RequestError NOT_READY while the bin is filled, INTERNAL where that failed
   void requireReady() const;
 
+  /// What the work on the cell gives; without physics, the cell has failed. \throws as the work
+  template <typename Work>
+  auto act(const Work& work);
+
   /// Publishes what the sensor sees. \pre cell_mutex_ is locked, the bin is filled \return what was published
   std::string expose();
   void exposePeriodically();

@@ -32,6 +32,7 @@ struct GripScene
 {
   std::vector<PlacedMesh> meshes;
   std::optional<std::size_t> target;
+  double rim = 0;  ///< height of the bin's walls, bin frame, metres
 
   bool isTarget(std::size_t index) const { return target && *target == index; }
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "bin_picking_perception/common/error.hpp"
@@ -96,6 +97,15 @@ void check(const Gripper& gripper, const GripPath& path)
                          "' has no body with touches_part, so that nothing could ever be held; mark its pads or lip");
 }
 
+double lowestOf(const Gripper& gripper, const Pose& T_bin_tool0, double opening)
+{
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < gripper.bodies.size(); ++b)
+    for (const Eigen::Vector3d& p : bodyInBin(gripper, b, T_bin_tool0, opening).vertices)
+      lowest = std::min(lowest, p.z());
+  return lowest;
+}
+
 /// One grip, step by step.
 class Trial
 {
@@ -106,7 +116,7 @@ public:
 
   GripVerdict run()
   {
-    const bool is_over = approachCollides() || !closes() || retreatCollides();
+    const bool is_over = entryCollides() || approachCollides() || !closes() || retreatCollides() || exitCollides();
     if (scene_.target)
       verdict_.id = scene_.meshes[*scene_.target].id;
     if (is_over)
@@ -124,15 +134,36 @@ private:
   bool isPad(std::size_t body) const { return gripper_.bodies[body].touches_part; }
   std::string targetName() const { return scene_.meshes[*scene_.target].name; }
 
+  /// How far up something has to go to be over the rim with its lowest point.
+  Eigen::Vector3d lift(double lowest) const { return {0, 0, std::max(0.0, scene_.rim - lowest)}; }
+
+  std::optional<Touch> touchOfOpenGripper(const GripperWay& way) const
+  {
+    // The lip is pressed on the part, and is soft.
+    const bool may_touch = gripper_.kind == Gripper::Kind::Suction;
+    return firstTouch(scene_, gripper_, way, [&](std::size_t body, std::size_t mesh) {
+      return may_touch && isPad(body) && (scene_.target ? scene_.isTarget(mesh) : scene_.meshes[mesh].isPart());
+    });
+  }
+
+  /// A way that begins within the bin says nothing of how the gripper got there: straight down from over the rim.
+  bool entryCollides()
+  {
+    const Eigen::Vector3d down = -lift(lowestOf(gripper_, path_.T_bin_tool0_pre_grasp, path_.opening));
+    const GripperWay way{Eigen::Translation3d(-down) * path_.T_bin_tool0_pre_grasp, down, path_.opening};
+    const auto touch = touchOfOpenGripper(way);
+    if (touch)
+      collide(
+          GripStage::Approach, *touch, way,
+          "on the way down into the bin, " + millimetres((1 - touch->time) * down.norm()) + " before the pre-grasp");
+    return touch.has_value();
+  }
+
   bool approachCollides()
   {
     const Eigen::Vector3d motion = path_.T_bin_tool0_grasp.translation() - path_.T_bin_tool0_pre_grasp.translation();
     const GripperWay way{path_.T_bin_tool0_pre_grasp, motion, path_.opening};
-    // The lip is pressed on the part, and is soft.
-    const bool may_touch = gripper_.kind == Gripper::Kind::Suction;
-    const auto touch = firstTouch(scene_, gripper_, way, [&](std::size_t body, std::size_t mesh) {
-      return may_touch && isPad(body) && (scene_.target ? scene_.isTarget(mesh) : scene_.meshes[mesh].isPart());
-    });
+    const auto touch = touchOfOpenGripper(way);
     if (touch)
       collide(GripStage::Approach, *touch, way,
               "on the approach, " + millimetres((1 - touch->time) * motion.norm()) + " before the grasp");
@@ -158,16 +189,43 @@ private:
     return !closing.touch && closing.missed.empty();
   }
 
+  Eigen::Vector3d retreat() const
+  {
+    return path_.T_bin_tool0_retreat.translation() - path_.T_bin_tool0_grasp.translation();
+  }
+
+  /// By which closing has moved the part.
+  Eigen::Vector3d shift() const
+  {
+    return verdict_.offset * (path_.T_bin_tool0_grasp.linear() * gripper_.R_tool0_tip.col(1));
+  }
+
   bool retreatCollides()
   {
-    const Eigen::Vector3d motion = path_.T_bin_tool0_retreat.translation() - path_.T_bin_tool0_grasp.translation();
-    const GripperWay way{path_.T_bin_tool0_grasp, motion, verdict_.final_opening};
+    return wayOutCollides({path_.T_bin_tool0_grasp, retreat(), verdict_.final_opening}, shift(),
+                          "on the retreat, %s after the grasp");
+  }
+
+  /// A retreat that ends within the bin does not yet take the part out: straight up to over the rim.
+  bool exitCollides()
+  {
+    const Eigen::Vector3d moved = shift() + retreat();
+    const double lowest_of_held = scene_.meshes[*scene_.target].bounds_bin.min().z() + moved.z();
+    const double lowest_of_gripper = lowestOf(gripper_, path_.T_bin_tool0_retreat, verdict_.final_opening);
+    const Eigen::Vector3d up = lift(std::min(lowest_of_held, lowest_of_gripper));
+    return wayOutCollides({path_.T_bin_tool0_retreat, up, verdict_.final_opening}, moved,
+                          "on the way up out of the bin, %s after the retreat");
+  }
+
+  /// \param moved by which the held part was moved before \param place with %s for the length of the way until then
+  bool wayOutCollides(const GripperWay& way, const Eigen::Vector3d& moved, const std::string& place)
+  {
+    const Eigen::Vector3d& motion = way.motion_bin;
     const auto gripper =
         firstTouch(scene_, gripper_, way, [this](std::size_t, std::size_t mesh) { return scene_.isTarget(mesh); });
-    const Eigen::Vector3d shift = verdict_.offset * (path_.T_bin_tool0_grasp.linear() * gripper_.R_tool0_tip.col(1));
-    const auto held = firstTouchOfHeld(scene_, shift, motion, parameters_);
+    const auto held = firstTouchOfHeld(scene_, moved, motion, parameters_);
     const auto where = [&](double time) {
-      return "on the retreat, " + millimetres(time * motion.norm()) + " after the grasp";
+      return std::string(place).replace(place.find("%s"), 2, millimetres(time * motion.norm()));
     };
     if (gripper && (!held || gripper->time <= held->time))
       collide(GripStage::Retreat, *gripper, way, where(gripper->time));
@@ -222,10 +280,12 @@ struct GripJudge::Impl
   std::vector<std::string> names;
   std::vector<CollisionMesh> parts;
   std::vector<BinSide> sides;
+  double rim = 0;
 
   GripScene scene(const std::vector<Body>& bodies, int id_meant) const
   {
     GripScene scene;
+    scene.rim = rim;
     for (const BinSide& side : sides)
       scene.meshes.emplace_back(side.mesh, Pose::Identity(), side.name, -1);
     for (const Body& body : bodies)
@@ -252,6 +312,7 @@ GripJudge::GripJudge(const std::vector<CellPart>& parts, const Bin& bin, double 
     impl->parts.emplace_back(part.mesh);
   }
   impl->sides = makeSides(bin, table_size);
+  impl->rim = bin.inner_size.z();
   impl_ = std::move(impl);
 }
 

@@ -87,13 +87,15 @@ const char* toString(GripObstacle obstacle);
 /// the gripper and the part that is held.
 ///
 /// 1. Approach, fingers open: whatever is touched, the target too, is a collision. The straight way is tested as a
-///    whole, not by steps.
+///    whole, not by steps. Where the pre-grasp lies within the bin, so is the way straight down to it from over the
+///    rim.
 /// 2. Closing, by steps: touching another part or the bin is a collision, as is touching the target with a body that
 ///    may not. One finger alone pushes the part along, at most by max_push; both together hold it. The opening has to
 ///    be the one meant, and most of the touched surface has to lie within the friction cone of the fingers' force, as
 ///    has the line between both contacts. Suction in its place: the whole lip has to meet the surface of one part.
 /// 3. Retreat: nothing but the target may be touched by the gripper; the held part must not reach deeper into the bin
-///    than at rest, nor by more than max_drag deeper into other parts, which it would drag along.
+///    than at rest, nor by more than max_drag deeper into other parts, which it would drag along. A retreat that ends
+///    with gripper or part within the bin goes on straight up until both are over the rim.
 class GripJudge
 {
 public:

@@ -9,6 +9,8 @@ namespace bin_picking::simulation
 {
 namespace
 {
+constexpr double THINNEST = 1e-4;  // metres, of what is left of a side; the way is tested as a whole, so that it is met
+
 /// The deepest place at which points of one lie inside the other.
 double reach(const PlacedMesh& one, const PlacedMesh& other, const Eigen::Vector3d& motion_of_one)
 {
@@ -31,13 +33,16 @@ double depthBetween(const PlacedMesh& held, const PlacedMesh& other, const Eigen
   return std::max(reach(held, other, motion_of_held), reach(other, held, -motion_of_held));
 }
 
-/// A box of the bin, drawn in on all sides. Nothing if nothing is left of it.
-std::optional<ConvexBody> drawnIn(const Eigen::AlignedBox3d& box, double by)
+/// A side of the bin, drawn in on all sides. One that is too thin for that moves outwards: no play lets a part through.
+ConvexBody drawnIn(const Eigen::AlignedBox3d& box, double by)
 {
-  const Eigen::Vector3d size = box.sizes() - Eigen::Vector3d::Constant(2 * by);
-  if (!(size.minCoeff() > 0))
-    return std::nullopt;
-  return makeBox(box.center(), size);
+  const Eigen::Vector3d size = (box.sizes() - Eigen::Vector3d::Constant(2 * by)).cwiseMax(THINNEST);
+  Eigen::Index across = 0;
+  box.sizes().minCoeff(&across);
+  Eigen::Vector3d center = box.center();
+  const double half = 0.5 * box.sizes()[across] - by - 0.5 * size[across];  // below 0 where it is too thin
+  center[across] -= center[across] > 0 ? half : -half;
+  return makeBox(center, size);
 }
 
 double depthInBox(const Eigen::AlignedBox3d& box, const PlacedMesh& part)
@@ -55,13 +60,11 @@ double depthInBox(const Eigen::AlignedBox3d& box, const PlacedMesh& part)
 std::optional<double> touchOfBox(const PlacedMesh& held, const Eigen::AlignedBox3d& box, double play,
                                  const Eigen::Vector3d& shift_bin, const Eigen::Vector3d& motion_bin)
 {
-  const auto body_bin = drawnIn(box, play);
-  if (!body_bin)
-    return std::nullopt;
   // As the part sees it, the bin moves.
   Pose T_mesh_bin = held.T_mesh_bin;
   T_mesh_bin.translation() -= held.T_mesh_bin.linear() * shift_bin;
-  return firstOverlap(*held.mesh, transformed(*body_bin, T_mesh_bin), -(held.T_mesh_bin.linear() * motion_bin));
+  return firstOverlap(*held.mesh, transformed(drawnIn(box, play), T_mesh_bin),
+                      -(held.T_mesh_bin.linear() * motion_bin));
 }
 
 std::optional<HeldTouch> firstTouchOfBin(const GripScene& scene, const Eigen::Vector3d& shift_bin,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/evaluation/pose_error.hpp"
@@ -153,6 +154,80 @@ TEST(Detector, emptyBinIsAnOrdinaryResultThatSaysSo)
   EXPECT_GT(std::count_if(result.surroundings->z.begin(), result.surroundings->z.end(), measured), 1000) << "the floor";
 }
 
+/// Nothing above the floor, and no measurement where `lost` says so.
+DepthGrid emptyScene(const std::function<bool(int u, int v)>& lost)
+{
+  DepthGrid grid = test::renderTees({}, SIGMA);
+  for (int v = 0; v < grid.height; ++v)
+    for (int u = 0; u < grid.width; ++u)
+      if (lost(u, v))
+        grid.invalidate(grid.index(u, v));
+  return grid;
+}
+
+TEST(Detector, aBinOfWhichLittleIsMeasuredIsNotCalledEmpty)
+{
+  Detector::Request request;
+  request.bin = test::wideBin();
+  const auto result = [&](const std::function<bool(int u, int v)>& lost) {
+    return detector().detect(emptyScene(lost), request);
+  };
+  // The picture is 480 pixels wide, the bin's floor nearly as wide.
+  EXPECT_EQ(result([](int u, int) { return u < 200; }).code, DetectionCode::BinEmpty);
+  const DetectionResult covered = result([](int u, int) { return u < 280; });
+  EXPECT_EQ(covered.code, DetectionCode::BinUnseen) << covered.message;
+  EXPECT_NE(covered.message.find("of its floor is measured"), std::string::npos) << covered.message;
+  EXPECT_NE(covered.message.find("empty_bin_floor_share"), std::string::npos) << covered.message;
+  // The projector is off: only what is bright without it, beside the bin, is measured; or nothing at all.
+  EXPECT_EQ(result([](int u, int v) { return u > 5 || v > 5; }).code, DetectionCode::BinUnseen);
+  EXPECT_EQ(result([](int, int) { return true; }).code, DetectionCode::BinUnseen);
+  // Something else is measured where the floor should be: the bin is not there, or its pose is wrong.
+  request.bin->T_camera_bin.translation().z() -= 0.03;
+  EXPECT_EQ(result([](int, int) { return false; }).code, DetectionCode::BinUnseen);
+}
+
+TEST(Detector, withoutABinThePictureTellsWhetherAnythingWasSeen)
+{
+  DetectorParameters parameters;
+  parameters.input.z_max = 0.65;  // above the floor
+  const auto code = [&](const std::function<bool(int u, int v)>& lost) {
+    return detector(parameters).detect(emptyScene(lost), {}).code;
+  };
+  EXPECT_EQ(code([](int, int) { return false; }), DetectionCode::BinEmpty);
+  EXPECT_EQ(code([](int u, int) { return u > 20; }), DetectionCode::BinUnseen);
+}
+
+/// A ball, which is no part, over the floor.
+DepthGrid ballScene(const Eigen::Vector3d& middle)
+{
+  DepthRenderer renderer(480, 384, test::smallCamera());
+  renderer.draw(test::floorMesh(), Pose::Identity(), 0);
+  Pose T = Pose::Identity();
+  T.translation() = middle;
+  renderer.draw(test::sphere(0.05, 60000), T, 0.002, 1);
+  return renderer.grid();
+}
+
+TEST(Detector, whatLiesBesideTheWallsIsSearchedButDoesNotFillTheBin)
+{
+  const auto truth = test::posesApart(1, 1);
+  Detector::Request request;
+  request.bin = test::wideBin();
+  DetectorParameters parameters;
+  parameters.input.empty_bin_wall_margin = 0.149;  // nearly all of the bin is beside a wall
+  const DetectionResult found = detector(parameters).detect(test::renderTees(truth, SIGMA), request);
+  EXPECT_EQ(found.code, DetectionCode::Ok) << found.message;
+  EXPECT_GE(indexOf(found.detections, truth[0]), 0) << nearestError(found.detections, truth[0]);
+
+  const DepthGrid ball = ballScene({0, 0.07, 0.6});
+  const DetectionResult nothing = detector(parameters).detect(ball, request);
+  EXPECT_EQ(nothing.code, DetectionCode::BinEmpty) << nothing.message;
+  EXPECT_FALSE(nothing.rejected.empty()) << "it was searched";
+  EXPECT_NE(nothing.message.find("149.0 mm off its walls"), std::string::npos) << nothing.message;
+  parameters.input.empty_bin_wall_margin = 0.006;
+  EXPECT_EQ(detector(parameters).detect(ball, request).code, DetectionCode::NoMatch);
+}
+
 TEST(Detector, aSceneThatIsEmptyForOnePartDoesNotLoseTheOther)
 {
   TrainingParameters coarse;
@@ -192,13 +267,7 @@ TEST(Detector, aSceneThatIsEmptyForOnePartDoesNotLoseTheOther)
 
 TEST(Detector, otherThingsAreNoMatchWithReasons)
 {
-  DepthRenderer renderer(480, 384, test::smallCamera());
-  renderer.draw(test::floorMesh(), Pose::Identity(), 0);
-  const OrientedPoints ball = test::sphere(0.05, 60000);
-  Pose T = Pose::Identity();
-  T.translation().z() = 0.6;
-  renderer.draw(ball, T, 0.002, 1);
-  const DetectionResult result = detector().detect(renderer.grid(), {});
+  const DetectionResult result = detector().detect(ballScene({0, 0, 0.6}), {});
   EXPECT_EQ(result.code, DetectionCode::NoMatch);
   EXPECT_TRUE(result.detections.empty());
   EXPECT_FALSE(result.message.empty());

@@ -81,7 +81,7 @@ public:
   {
     Bin bin;
     bin.inner_size = {0.4, 0.3, 0.15};
-    bin.wall_thickness = 0.005;
+    bin.wall_thickness = wall_thickness;
     return simulation::GripJudge(parts, bin, 0).tryGrip(bodies, gripper, path, id_meant, parameters);
   }
 
@@ -100,6 +100,7 @@ public:
 
   std::vector<simulation::CellPart> parts;
   std::vector<simulation::Body> bodies;
+  double wall_thickness = 0.005;
   Gripper gripper = twoFingers();
   simulation::GripTrialParameters parameters;
 };

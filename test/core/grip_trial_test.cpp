@@ -278,6 +278,55 @@ TEST(GripTrial, theHeldPartRunsIntoTheWall)
   expectWords(verdict.what, {"23.5 mm after the grasp"});
 }
 
+TEST(GripTrial, shortWaysGoOnStraightUpOverTheRim)
+{
+  GripScenario scene;
+  const int id = scene.add(BLOCK, at(0, 0, REST));
+  GripPath still = middleGrip(scene);
+  still.T_bin_tool0_pre_grasp = still.T_bin_tool0_retreat = still.T_bin_tool0_grasp;
+  EXPECT_EQ(scene.tryGrip(still, id).outcome, Outcome::Taken) << "nothing lies above";
+
+  // Over the whole gripper as it stands at the pre-grasp: it would have gone through it.
+  scene.add(test::box(0.1f, 0.02f, 0.002f), at(0, 0.06, 0.2), "shelf");
+  GripPath short_way = middleGrip(scene);
+  short_way.T_bin_tool0_pre_grasp = Eigen::Translation3d(0, 0, 0.01) * short_way.T_bin_tool0_grasp;
+  short_way.T_bin_tool0_retreat = short_way.T_bin_tool0_pre_grasp;
+  const GripVerdict entered = scene.tryGrip(short_way, id);
+  expectCollision(entered, GripStage::Approach, GripObstacle::Part, "palm", "part 1 (shelf)");
+  expectWords(entered.what, {"on the way down into the bin", "before the pre-grasp"});
+}
+
+TEST(GripTrial, theHeldPartHasToGetOutOfTheBin)
+{
+  GripScenario scene;
+  const int id = scene.add(test::box(0.12f, 0.03f, 0.025f), at(0.06, 0, REST), "bar");  // its end reaches to x = 120 mm
+  scene.add(test::box(0.02f, 0.03f, 0.002f), at(0.11, 0, 0.101), "shelf");  // beside the gripper, 75 mm over the bar
+  GripPath path = scene.fromAbove({0.02, 0, TIP}, 0.05, 0.03);
+  path.T_bin_tool0_retreat = Eigen::Translation3d(0, 0, 0.05) * path.T_bin_tool0_grasp;
+  const GripVerdict verdict = scene.tryGrip(path, id);
+  expectCollision(verdict, GripStage::Retreat, GripObstacle::Part, "held part", "part 1 (shelf)");
+  expectWords(verdict.what, {"on the way up out of the bin", "after the retreat"});
+  scene.bodies.pop_back();
+  EXPECT_EQ(scene.tryGrip(path, id).outcome, Outcome::Taken) << "a retreat shorter than the bin is deep is none";
+}
+
+TEST(GripTrial, thinWallsHoldTheHeldPartBack)
+{
+  // The play on both sides is as much as the wall is thick, or more.
+  for (const double thickness : {0.0005, 0.001, 0.005})
+  {
+    GripScenario scene;
+    scene.wall_thickness = thickness;
+    const int id = scene.add(test::box(0.12f, 0.03f, 0.025f), at(0.13, 0, REST), "bar");
+    GripPath path = scene.fromAbove({0.08, 0, TIP}, 0.05, 0.03);
+    EXPECT_EQ(scene.tryGrip(path, id).outcome, Outcome::Taken) << thickness;
+    path.T_bin_tool0_retreat.translation().x() += 0.06;
+    const GripVerdict verdict = scene.tryGrip(path, id);
+    expectCollision(verdict, GripStage::Retreat, GripObstacle::Bin, "held part", "wall at +x");
+    expectWords(verdict.what, {"23.5 mm after the grasp"});
+  }
+}
+
 TEST(GripTrial, aPartAgainstTheWallMayBeLiftedAlongIt)
 {
   GripScenario scene;

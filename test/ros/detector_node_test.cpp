@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 // The detector from cloud to answer, within this process.
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <sensor_msgs/Image.h>
 #include <tf2_ros/transform_broadcaster.h>
 
@@ -87,6 +88,29 @@ TEST_F(DetectorNodeTest, TopicsAndTfSayTheSameAsTheAnswer)
   EXPECT_GT(markers->markers.size(), 3u);
 }
 
+TEST_F(DetectorNodeTest, TheLatestTfIsThatOfTheLastAnswerOfOneCloud)
+{
+  tf2_ros::Buffer buffer;
+  tf2_ros::TransformListener listener(buffer, true);
+  expectGoodAnswer();  // the camera stands still from here on
+  GetBestGrasp::Request request;
+  request.acquisition = GetBestGrasp::Request::USE_LATEST;
+  request.max_age = ros::Duration(PATIENCE);
+  const auto parentAfter = [&](const std::string& frame) {
+    request.output_frame = frame;
+    std::string parent;
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(PATIENCE);
+    do  // the listener connects at its own pace
+      EXPECT_EQ(ask(request).code.value, ReturnCode::OK);
+    while (ros::WallDuration(0.1).sleep() && ros::WallTime::now() < end &&
+           !(buffer._getParent("cell_part_0", ros::Time(0), parent) && parent == frame));
+    return parent;
+  };
+  EXPECT_EQ(parentAfter("base_link"), "base_link");
+  EXPECT_EQ(parentAfter("camera"), "camera");
+  EXPECT_EQ(parentAfter("base_link"), "base_link");
+}
+
 TEST_F(DetectorNodeTest, SegmentationIsPublishedToSubscribers)
 {
   ros::NodeHandle nh;
@@ -137,6 +161,29 @@ TEST_F(DetectorNodeTest, OtherFramesOnRequest)
   expectGoodAnswer();
 }
 
+TEST_F(DetectorNodeTest, OnesBadRequestDoesNotWipeOutWhatOthersSee)
+{
+  expectGoodAnswer();  // the camera stands still from here on
+  const auto shown = [] {
+    const auto detections = receive<bin_picking_perception::DetectionArray>("/cell/detector/detections");
+    return detections ? detections->code.name : "nothing is latched";
+  };
+  GetBestGrasp::Request request;
+  request.acquisition = GetBestGrasp::Request::USE_LATEST;
+  request.max_age = ros::Duration(PATIENCE);
+  request.output_frame = "base_lnk";
+  EXPECT_EQ(ask(request).code.value, ReturnCode::TF_UNKNOWN_FRAME);
+  EXPECT_EQ(shown(), "OK");
+  request.deadline = ros::Duration(0.05);
+  const ros::WallTime start = ros::WallTime::now();
+  EXPECT_EQ(ask(request).code.value, ReturnCode::TF_UNKNOWN_FRAME);
+  EXPECT_LT((ros::WallTime::now() - start).toSec(), 0.4) << "tf is not waited for beyond the deadline, for tf_timeout";
+  request.output_frame.clear();
+  request.deadline = ros::Duration(1e-6);
+  EXPECT_EQ(ask(request).code.value, ReturnCode::DEADLINE);
+  EXPECT_EQ(shown(), "OK");
+}
+
 TEST_F(DetectorNodeTest, RefusesRequestsThatMakeNoSense)
 {
   camera_->start(makeMessage(scene_->grid));
@@ -171,6 +218,24 @@ TEST_F(DetectorNodeTest, OldCloudsAndPassedDeadlines)
   request.deadline = ros::Duration(0.05);  // a new cloud never comes
   EXPECT_EQ(ask(request).code.value, ReturnCode::NO_CLOUD);
   expectGoodAnswer();
+}
+
+TEST_F(DetectorNodeTest, DiagnosticsTellWhenTheLastCloudCame)
+{
+  const auto input = [] {
+    const auto message = receive<diagnostic_msgs::DiagnosticArray>("/diagnostics");
+    for (const auto& status : message->status)
+      if (status.name == "cell/detector: input cloud")
+        return status;
+    return diagnostic_msgs::DiagnosticStatus();
+  };
+  expectGoodAnswer();  // the camera stands still from here on
+  diagnostic_msgs::DiagnosticStatus status = input();
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(20);
+  while (status.message.find(" ago.") == std::string::npos && ros::WallTime::now() < end)
+    status = input();
+  EXPECT_EQ(status.message.rfind("The last cloud came ", 0), 0u) << status.name << status.message;
+  EXPECT_EQ(status.level, diagnostic_msgs::DiagnosticStatus::OK) << "it comes when somebody asks for it";
 }
 
 TEST_F(DetectorNodeTest, TuningChangesTheNextAnswer)
@@ -217,12 +282,14 @@ TEST_F(DetectorNodeTest, ContinuousProcessingAndEndWhileACallWaits)
   ros::ServiceClient client = private_nh.serviceClient<GetBestGrasp>("get_best_grasp");
   auto call = std::async(std::launch::async, [&client] {
     GetBestGrasp waiting;  // for a cloud that never comes
-    client.call(waiting);
+    EXPECT_TRUE(client.call(waiting)) << "the connection was cut before the answer";
     return waiting.response.code.value;
   });
+  ASSERT_EQ(call.wait_for(std::chrono::seconds(1)), std::future_status::timeout) << "the call does not wait";
   second.reset();
   ASSERT_EQ(call.wait_for(std::chrono::seconds(10)), std::future_status::ready)
       << "the end of the node hangs behind a call";
+  EXPECT_EQ(call.get(), ReturnCode::NOT_READY);
 }
 
 TEST_F(DetectorNodeTest, GraspsOfAPartWhoseTurnIsOpenAreForThoseWhoAcceptThem)

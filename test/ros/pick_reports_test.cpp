@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <future>
 #include <set>
+#include <thread>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "detector_node_fixture.hpp"
@@ -144,6 +145,7 @@ TEST_F(PickReportsTest, AReportDoesNotWaitForARequestThatWaits)
       EXPECT_TRUE(ros::service::call("/cell/detector/get_best_grasp", call));
       return call.response.code.value;
     }));
+  std::this_thread::sleep_for(std::chrono::seconds(1));  // until all threads of the service are busy with them
   EXPECT_EQ(report(answer.grasps[0].uid, ReportPick::Request::PICKED).code.value, ReturnCode::OK);
   for (auto& call : waiting)
     EXPECT_EQ(call.wait_for(std::chrono::seconds(0)), std::future_status::timeout) << "it was answered without a cloud";

@@ -155,6 +155,56 @@ TEST(VirtualCell, RefillsWithTheNextSeed)
   EXPECT_EQ(expected.truth->instances.at(0).pose, second.truth->instances.at(0).pose);
 }
 
+TEST(VirtualCell, ShakesUpWhatLiesInTheBin)
+{
+  CellUnderTest cell("shake", {{"counts", 3}});
+  const Exposure before = cell.expose();
+  ASSERT_TRUE(before.complete());
+  EXPECT_EQ(cell.takeId(before.truth->instances[0].id).num_left, 2u);
+  const auto shaken = cell.call("shake");
+  ASSERT_TRUE(shaken.success) << shaken.message;
+  EXPECT_TRUE(contains(shaken.message, "2 parts")) << shaken.message;
+  const Exposure after = cell.expose();
+  ASSERT_EQ(after.truth->instances.size(), 2u);
+  for (const auto& now : after.truth->instances)
+    for (const auto& then : before.truth->instances)
+    {
+      EXPECT_NE(now.id, then.id);
+      EXPECT_NE(now.pose, then.pose);
+    }
+  for (const auto& instance : after.truth->instances)
+    cell.takeId(instance.id);
+  EXPECT_TRUE(cell.call("shake").success) << "an empty bin may be shaken too";
+}
+
+// About every third filling finds room below the rim.
+const std::map<std::string, XmlRpc::XmlRpcValue> FULL_BIN = {
+    {"counts", 7}, {"layout/bin_length", 0.12}, {"layout/bin_width", 0.1}, {"layout/bin_height", 0.04}};
+
+TEST(VirtualCell, ABinThatThePhysicsCannotFillAgainHasFailedUntilItIsRefilled)
+{
+  CellUnderTest cell("full", FULL_BIN);
+  const auto until = [&cell](const char* service, bool success) {
+    auto response = cell.call(service);
+    for (int k = 0; k < 100 && static_cast<bool>(response.success) != success; ++k)
+    {
+      ros::WallDuration(0.05).sleep();  // the first filling may be under way
+      response = cell.call(service);
+    }
+    EXPECT_EQ(static_cast<bool>(response.success), success) << response.message;
+    return response.message;
+  };
+  until("refill", true);
+  const std::string why = until("shake", false);
+  EXPECT_TRUE(contains(why, "too full") && contains(why, "~refill")) << why;
+  const TakePart::Response refused = cell.takeId(1);
+  EXPECT_EQ(refused.outcome, TakePart::Response::FAILED) << refused.message;
+  EXPECT_TRUE(contains(refused.message, "too full")) << refused.message;
+  EXPECT_FALSE(cell.call("trigger").success) << "a bin that is half full is no good";
+  until("refill", true);
+  EXPECT_TRUE(cell.call("trigger").success);
+}
+
 struct Mistake
 {
   const char* name;

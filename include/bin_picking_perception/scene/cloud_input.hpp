@@ -35,6 +35,8 @@ struct InputParameters
   double max_plausible_depth = 20;
   double max_projection_error = 2;
   int empty_bin_points = 50;
+  double empty_bin_wall_margin = 0.006;
+  double empty_bin_floor_share = 0.5;
 
   void visit(ParameterVisitor& v);
 };

@@ -72,14 +72,6 @@ void keepFinest(DepthGrid&& surroundings, DetectionResult& result)
   if (!result.surroundings || result.surroundings->size() < surroundings.size())
     result.surroundings = std::make_shared<const DepthGrid>(std::move(surroundings));
 }
-
-void reportEmptyBin(DetectionResult& result, double measured, int required)
-{
-  result.code = DetectionCode::BinEmpty;
-  result.message = "the bin is empty: about " + std::to_string(static_cast<long>(measured)) +
-                   " points lie inside the limits, fewer than " + std::to_string(required) +
-                   " (input/empty_bin_points)";
-}
 }  // namespace
 
 DetectionResult Detector::detect(const DepthGrid& grid, const Request& request) const
@@ -97,13 +89,13 @@ DetectionResult Detector::detectIn(const PointView& points, const Request& reque
 
   const int comparison_cell = comparisonCell(points, models_);
   std::vector<Assessed> assessed;
-  double most_measured = 0;  // parts see the scene at their own leaf: empty is what is empty for all
+  BinContent content;
   for (const std::size_t index : indices)
   {
     const TrainedModel& model = *models_[index];
     PreparedScene scene = reduceScene(points, bin, model, parameters_, executor_, clock);
     const double measured = measuredPoints(scene);
-    most_measured = std::max(most_measured, measured);
+    content.look(scene, parameters_.input);
     if (measured < parameters_.input.empty_bin_points)
     {
       keepFinest(std::move(scene.surroundings), result);
@@ -134,8 +126,9 @@ DetectionResult Detector::detectIn(const PointView& points, const Request& reque
   }
   selectDetections(std::move(assessed), parameters_, result);
   clock.lap("selection");
-  if (most_measured < parameters_.input.empty_bin_points)
-    reportEmptyBin(result, most_measured, parameters_.input.empty_bin_points);
+  // What lies beside the walls is searched too: only where that gave nothing does it pass for the walls themselves.
+  if (content.isLittle(parameters_.input) && result.detections.empty() && !result.partial)
+    content.describe(parameters_.input, result);
   else
     summarize(result);
   clock.finish();

@@ -15,8 +15,6 @@ namespace
 {
 constexpr double MIN_EDGE = 0.5;  // of the leaf: a smaller drop in depth is no end of a part
 constexpr double EDGE_NOISE = 3;  // standard deviations that are no drop
-// Metres: what is measured this near to a wall may be the wall, and no sign that the bin holds something.
-constexpr float BESIDE_WALL = 0.006F;
 }  // namespace
 
 PreparedScene reduceScene(const PointView& raw, const Bin* bin, const TrainedModel& model,
@@ -34,20 +32,6 @@ PreparedScene reduceScene(const PointView& raw, const Bin* bin, const TrainedMod
   removeOutliers(scene.grid, parameters.preprocessing, executor);
   clock.lap("outliers");
   return scene;
-}
-
-double measuredPoints(const PreparedScene& scene)
-{
-  const Eigen::Isometry3f T_bin_camera =
-      scene.bin ? Eigen::Isometry3f(scene.bin->T_camera_bin.inverse().cast<float>()) : Eigen::Isometry3f::Identity();
-  Eigen::Array2f limit = Eigen::Array2f::Constant(std::numeric_limits<float>::infinity());
-  if (scene.bin)
-    limit = scene.bin->inner_size.head<2>().cast<float>().array() / 2 - BESIDE_WALL;
-  std::size_t pixels = 0;
-  for (int i = 0; i < static_cast<int>(scene.grid.size()); ++i)
-    if (scene.grid.valid(i))
-      pixels += ((T_bin_camera * scene.grid.point(i)).head<2>().array().abs() < limit).all() ? 1 : 0;
-  return static_cast<double>(pixels) * scene.reduction * scene.reduction;
 }
 
 void describeScene(PreparedScene& scene, const TrainedModel& model, const DetectorParameters& parameters,

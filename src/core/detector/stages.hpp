@@ -52,8 +52,23 @@ struct Hypothetical
 PreparedScene reduceScene(const PointView& raw, const Bin* bin, const TrainedModel& model,
                           const DetectorParameters& parameters, const Executor& executor, StageClock& clock);
 
-/// Measured raw pixels inside the region and clear of the bin's walls, estimated from the working grid.
+/// Measured raw pixels inside the region, estimated from the working grid: what there is to search.
 double measuredPoints(const PreparedScene& scene);
+
+/// What tells an empty bin from one that was not seen. Parts see the scene at their own leaf: the most of all counts.
+struct BinContent
+{
+  bool has_bin = false;
+  double points = 0;        ///< measured raw pixels inside the region that are not beside a wall of the bin
+  double beside_walls = 0;  ///< the others: walls, or parts that lean on them
+  double floor_share =
+      0;  ///< of the bin's floor that is measured, of the picture without a bin; only where points are few
+
+  void look(const PreparedScene& scene, const InputParameters& parameters);
+  bool isLittle(const InputParameters& parameters) const { return points < parameters.empty_bin_points; }
+  /// Sets code and message. \pre little, and nothing was found
+  void describe(const InputParameters& parameters, DetectionResult& result) const;
+};
 
 /// Normals, samples and curvature.
 void describeScene(PreparedScene& scene, const TrainedModel& model, const DetectorParameters& parameters,

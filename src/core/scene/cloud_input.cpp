@@ -146,6 +146,17 @@ void InputParameters::visit(ParameterVisitor& v)
           max_projection_error);
   v.field({"empty_bin_points", "", "fewer measured points than this in the region mean that the bin is empty", 1, 1e6},
           empty_bin_points);
+  v.field(
+      {"empty_bin_wall_margin", "m",
+       "points nearer to a wall of the bin may be the wall: they are searched (but see bin_wall_margin), and do not "
+       "count as its content; larger calls a bin empty that holds thin parts at its walls",
+       0, 0.5},
+      empty_bin_wall_margin);
+  v.field({"empty_bin_floor_share", "",
+           "of the bin's floor (without a bin, of the picture) that must be measured to call it empty; smaller for a "
+           "floor that the sensor does not measure, and then a covered sensor passes for an empty bin",
+           0, 1},
+          empty_bin_floor_share);
 }
 
 PointView viewOf(const pcl::PointCloud<pcl::PointXYZ>& cloud, const InputParameters& parameters)
