@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bin_picking_perception/common/figures.hpp"
+#include "bin_picking_perception/common/ray_triangle.hpp"
 #include "grip_closing.hpp"
 
 namespace bin_picking::simulation
@@ -22,24 +23,6 @@ struct Hit
   std::size_t mesh = 0;
 };
 
-/// Where the line from p along a unit direction goes through a triangle (Moeller and Trumbore 1997).
-std::optional<double> crossing(const Triangle& t, const Eigen::Vector3d& p, const Eigen::Vector3d& direction)
-{
-  const Eigen::Vector3d u = t[1] - t[0];
-  const Eigen::Vector3d v = t[2] - t[0];
-  const Eigen::Vector3d h = direction.cross(v);
-  const double det = u.dot(h);
-  if (std::abs(det) < 1e-18)
-    return std::nullopt;
-  const Eigen::Vector3d s = p - t[0];
-  const Eigen::Vector3d q = s.cross(u);
-  const double a = s.dot(h) / det;
-  const double b = direction.dot(q) / det;
-  if (a < 0 || b < 0 || a + b > 1)
-    return std::nullopt;
-  return v.dot(q) / det;
-}
-
 /// The first surface within `reach` before and behind p.
 Hit lookAlong(const GripScene& scene, const Eigen::Vector3d& p_bin, const Eigen::Vector3d& direction_bin, double reach)
 {
@@ -53,7 +36,7 @@ Hit lookAlong(const GripScene& scene, const Eigen::Vector3d& p_bin, const Eigen:
     line.extend(p + reach * direction);
     placed.mesh->tree().visit(line, [&](std::size_t k) {
       const Triangle& t = placed.mesh->triangles()[k];
-      const auto height = crossing(t, p, direction);
+      const auto height = crossing(t[0], t[1] - t[0], t[2] - t[0], p, direction);
       if (height && std::abs(*height) <= reach && *height < first.height)
         first = {*height, -(t[1] - t[0]).cross(t[2] - t[0]).normalized().dot(direction), m};
     });

@@ -97,6 +97,26 @@ TEST(AvoidList, aSecondFailureNearbyReplacesTheFirst)
   EXPECT_TRUE(list.contains(HERE)) << "the time counts from the second one";
 }
 
+TEST(AvoidList, anAttemptThatWasNotMadeDoesNotShortenAFailure)
+{
+  for (const PickOutcome outcome : {PickOutcome::Collision, PickOutcome::Missed})
+  {
+    AvoidList list(someParameters());
+    list.report(outcome, HERE, 0);
+    list.report(PickOutcome::NotAttempted, HERE + Eigen::Vector3d(0.001, 0, 0), 50);
+    ASSERT_EQ(list.places().size(), 1u);
+    EXPECT_EQ(list.places()[0].outcome, outcome);
+    list.tick(99);
+    EXPECT_TRUE(list.contains(HERE)) << "for the whole time after " << toString(outcome);
+    // What is nearly over it does replace.
+    list.report(PickOutcome::NotAttempted, HERE, 99);
+    ASSERT_EQ(list.places().size(), 1u);
+    EXPECT_EQ(list.places()[0].outcome, PickOutcome::NotAttempted);
+    list.tick(105);
+    EXPECT_TRUE(list.contains(HERE));
+  }
+}
+
 TEST(AvoidList, newestOfTwoOverlappingPlacesIsTold)
 {
   AvoidList list(someParameters());

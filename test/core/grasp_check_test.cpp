@@ -163,6 +163,95 @@ TEST_F(BoxOf40x30x20, tolerancesMustHoldToo)
   EXPECT_TRUE(has(checker_.check(grasp), Fault::Width, {"spin of 10.0 deg", "less tolerance"}));
 }
 
+TEST_F(BoxOf40x30x20, whatHardlyMissesItsLimitIsToldApartFromIt)
+{
+  GraspDefinition grasp = fromAbove(0.03);
+  grasp.opening = 0.03199;
+  EXPECT_TRUE(has(checker_.check(grasp), Fault::WayIn, {"would pass at 0.99 mm", "at least 1.00 mm"}));
+  grasp.opening = 0.08001;
+  EXPECT_TRUE(has(checker_.check(grasp), Fault::Opening, {"an opening of 80.01 mm", "opens to 80.00 mm"}));
+}
+
+TEST_F(BoxOf40x30x20, aGraspForASuctionCupIsNoneForFingers)
+{
+  GraspDefinition grasp = fromAbove(0.03);
+  grasp.width = grasp.opening = 0;
+  const GraspCheck check = checker_.check(grasp);
+  EXPECT_TRUE(has(check, Fault::Opening, {"suction cup", "its opening is 0", "the 'plain' has fingers", "write"}));
+  EXPECT_EQ(check.findings.size(), 1u);
+}
+
+TEST_F(BoxOf40x30x20, theTightestTurnIsToldWithItsPlace)
+{
+  GraspDefinition grasp = fromAbove(0.03);
+  grasp.spin_tolerance = 2 * DEGREE;
+  grasp.opening = 0.034;
+  const GraspCheck upright = checker_.check(grasp, grasp.T_object_tip);
+  const GraspCheck all = checker_.check(grasp);
+  ASSERT_TRUE(all.good()) << all.findings.front().sentence;
+  double smallest = upright.clearance;
+  bool found = false;
+  for (const GraspVariant& variant : expandTolerances(grasp))
+  {
+    const GraspCheck turned = checker_.check(grasp, variant.T_object_tip);
+    smallest = std::min(smallest, turned.clearance);
+    found = found ||
+            (turned.clearance == all.clearance && turned.closest == all.closest && turned.closest_at == all.closest_at);
+  }
+  EXPECT_EQ(all.clearance, smallest);
+  EXPECT_LT(smallest, upright.clearance);
+  EXPECT_TRUE(found);
+}
+
+/// The box with a fin of 6 x 0.3 x 16 mm beside it, its middle at (15, y, 8) mm.
+TriangleMesh withFin(TriangleMesh mesh, float y)
+{
+  TriangleMesh fin = test::box(0.006f, 0.0003f, 0.016f);
+  for (auto& triangle : fin.triangles)
+    for (auto& corner : triangle)
+      corner += static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const auto& vertex : fin.vertices)
+    mesh.vertices.emplace_back(vertex + Eigen::Vector3f(0.015f, y, 0.008f));
+  mesh.triangles.insert(mesh.triangles.end(), fin.triangles.begin(), fin.triangles.end());
+  return mesh;
+}
+
+TEST_F(BoxOf40x30x20, whatIsNoPadMustMissThePartWhileClosing)
+{
+  // Beside each pad a blade of 0.6 mm, 2.4 mm inside of its face, that passes 2 mm above the box.
+  Gripper bladed = gripper_;
+  for (const double side : {1.0, -1.0})
+  {
+    GripperBody blade;
+    blade.name = side > 0 ? "right blade" : "left blade";
+    blade.shape = makeBox(Vector3d(0.015, -side * 0.0027, 0.134), Vector3d(0.006, 0.0006, 0.008));
+    blade.placements = {{0, Vector3d::Zero(), 0}, {0.08, Vector3d(0, side * 0.04, 0), 0}};
+    bladed.bodies.push_back(blade);
+  }
+  EXPECT_TRUE(GraspChecker(mesh_, bladed).check(fromAbove(0.03)).good());
+  // A fin in its way, thinner than the steps of any sampling; closing is -y of the part.
+  for (const float y : {0.0178f, -0.0178f, 0.0163f, 0.0167f})
+  {
+    const TriangleMesh finned = withFin(mesh_, y);
+    EXPECT_TRUE(GraspChecker(finned, gripper_).check(fromAbove(0.03)).good()) << "the pads pass beside it";
+    EXPECT_TRUE(has(GraspChecker(finned, bladed).check(fromAbove(0.03)), Fault::Closing,
+                    {y < 0 ? "right blade" : "left blade", "while the fingers close"}))
+        << y;
+  }
+}
+
+TEST_F(BoxOf40x30x20, padsOnOneSideHoldNothing)
+{
+  Gripper one_sided = gripper_;
+  one_sided.bodies[1] = one_sided.bodies[0];
+  expectWords(messageOf<ParameterError>([&] { GraspChecker(mesh_, one_sided); }),
+              {"'plain'", "one side of its tip", "mark the pad of the other finger"});
+  Gripper turned = gripper_;  // the tip closes along X, where both fingers are in the middle
+  turned.tip_xy = {0.05, 0};
+  turned.R_tool0_tip = Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitZ()).toRotationMatrix();
+  expectWords(messageOf<ParameterError>([&] { GraspChecker(mesh_, turned); }), {"one side of its tip"});
+}
+
 TEST_F(BoxOf40x30x20, aSuctionCupIsNotChecked)
 {
   Gripper cup = gripper_;

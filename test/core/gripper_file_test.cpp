@@ -95,7 +95,13 @@ TEST(GripperFile, readsTheHullOfAMesh)
   expectWords(messageOf<FileError>([&] {
                 loadGripper(folder.write("g.yaml", head + "bodies: [{name: w, mesh: {file: no.obj, unit: mm}}]\n"));
               }),
-              {"no.obj"});
+              {"g.yaml:5", "'w'", "no.obj"});
+  folder.write("flat.obj", "v 0 0 0\nv 20 0 0\nv 0 30 0\nv 20 30 0\nf 1 2 3\nf 2 4 3\n");
+  expectWords(messageOf<FileError>([&] {
+                loadGripper(folder.write("g.yaml", head + "bodies: [{name: plate, touches_part: true,\n"
+                                                          "  mesh: {file: flat.obj, unit: mm}}]\n"));
+              }),
+              {"g.yaml:6", "flat.obj", "'plate'", "flat"});
 }
 
 TEST(GripperFile, namesWhatIsWrong)

@@ -245,7 +245,13 @@ TEST(Kinematics, turnsAreThoseNextToTheReference)
   const Kinematics kinematics(robot);
   const Joints joints = degrees(170, -80, 95, -105, -90, 300);
   const Pose T = kinematics.forward(joints);
-  EXPECT_LT((kinematics.inverse(T, joints)[0] - joints).cwiseAbs().minCoeff(), 1e-9);
+  const auto turns = [&](const Joints& reference) {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const Joints& solution : kinematics.inverse(T, reference))
+      smallest = std::min(smallest, (solution - joints).cwiseAbs().maxCoeff());
+    return smallest;
+  };
+  EXPECT_LT(turns(joints), 1e-9);
   bool found = false;
   for (const Joints& solution : kinematics.inverse(T, degrees(170, 0, 0, 0, 0, 200)))
     if (jointDifference(solution, joints) < 1e-9)
@@ -254,11 +260,22 @@ TEST(Kinematics, turnsAreThoseNextToTheReference)
       EXPECT_NEAR(solution[5], joints[5], 1e-9);
     }
   EXPECT_TRUE(found);
-  for (const Joints& solution : kinematics.inverse(T, Joints::Zero()))
+  const std::vector<Joints> all = kinematics.inverse(T, Joints::Zero());
+  ASSERT_EQ(all.size(), 8u);
+  for (const Joints& solution : all)
     EXPECT_LE(solution.cwiseAbs().maxCoeff(), M_PI + 1e-9);
-  // Nearest to a reference beyond the limits, but within them.
-  for (const Joints& solution : kinematics.inverse(T, Joints::Constant(3 * M_PI)))
-    EXPECT_TRUE(withinLimits(robot, solution));
+  // Nearest to a reference beyond the limits, but within them: the elbow's are half a turn, the others' a whole one.
+  for (const double beyond : {3 * M_PI, 5 * M_PI, -9 * M_PI})
+  {
+    const std::vector<Joints> solutions = kinematics.inverse(T, Joints::Constant(beyond));
+    ASSERT_EQ(solutions.size(), all.size()) << beyond;
+    for (const Joints& solution : solutions)
+    {
+      EXPECT_TRUE(withinLimits(robot, solution));
+      for (const int joint : {0, 1, 3, 4, 5})
+        EXPECT_GE(std::copysign(1, beyond) * solution[joint], -1e-9) << beyond;
+    }
+  }
 }
 
 TEST(Kinematics, solutionsBeyondTheLimitsAreLeftOut)
@@ -284,6 +301,44 @@ TEST(Kinematics, saysWhyAPoseIsOutOfReach)
   EXPECT_TRUE(kinematics.inverse(T).empty());
   EXPECT_FALSE(kinematics.fault(T).too_far);
   expectWords(kinematics.fault(T).sentence, {"from the vertical axis", "0.133 m"});
+}
+
+// At the edges of what it reaches, an arm may take a pose with one branch and not with another.
+TEST(Kinematics, whatIsSaidOfABranchIsTrueOfIt)
+{
+  Robot compact = configuredRobot("ur5e");  // some of its branches are too short where others are too long
+  compact.dh[1].a = -0.30;
+  compact.dh[2].a = -0.12;
+  compact.dh[4].d = 0.3;
+  std::mt19937 random(5);
+  for (const Robot& robot : {configuredRobot("ur5e"), compact})
+  {
+    const Kinematics kinematics(robot);
+    int beside_others = 0;
+    int without_any = 0;
+    for (int i = 0; i < 3000; ++i)
+    {
+      Pose T = kinematics.forward(randomJoints(robot, random));
+      T.translation() *= 1.1;
+      int taken = 0;
+      for (int k = 0; k < Kinematics::NUM_BRANCHES; ++k)
+        taken += kinematics.branch(k, T, robot.home).has_value();
+      for (int k = 0; k < Kinematics::NUM_BRANCHES; ++k)
+        if (!kinematics.branch(k, T, robot.home))
+        {
+          const Kinematics::Fault fault = kinematics.fault(k, T, robot.home);
+          test::expectTrueOfLength(robot, fault.too_far, fault.sentence);
+          beside_others += taken > 0;
+        }
+      if (taken > 0)
+        continue;
+      const Kinematics::Fault fault = kinematics.fault(T);
+      test::expectTrueOfLength(robot, fault.too_far, fault.sentence);
+      ++without_any;
+    }
+    EXPECT_GT(beside_others, 100);
+    EXPECT_GT(without_any, 100);
+  }
 }
 
 TEST(Kinematics, refusesPosesAndGeometriesThatItCannotServe)

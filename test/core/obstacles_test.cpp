@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
+#include "../../src/core/grasping/body_sweep.hpp"
 #include "bin_picking_perception/common/error.hpp"
 #include "core/bin_of_grasps.hpp"
 #include "core/mesh_shapes.hpp"
@@ -423,6 +426,69 @@ TEST(Obstacles, FloorWallAndRim)
   EXPECT_NEAR(rim.distance, -0.01, 1e-6);
 }
 
+TEST(Obstacles, ALargeClearanceOfTheBinIsKept)
+{
+  // The finger's outer face 30 mm from the wall: farther than the bin is looked at where less is required.
+  const Bin bin = binBelowCamera();
+  const std::vector<PlacedPart> parts = {{&block(), inCamera({0.1, 0.05, 0.015})}};
+  const ToolMotion way = wayDown({0, 0.12 - 0.035 - 0.03, 0.09}, OPENING);
+  ObstacleParameters parameters;
+  parameters.bin_clearance = 0.05;
+  const Clearance near = Obstacles(nullptr, &bin, parts, parameters, Executor(1)).approach(twoFingers(), way, 0);
+  EXPECT_FALSE(near.free());
+  EXPECT_EQ(near.obstacle, "wall at +y");
+  EXPECT_NEAR(near.distance, 0.03, 1e-6);
+  parameters.bin_clearance = 0.029;
+  EXPECT_TRUE(Obstacles(nullptr, &bin, parts, parameters, Executor(1)).approach(twoFingers(), way, 0).free());
+}
+
+/// A picture in which nothing was measured, of a camera like that of the others.
+DepthGrid blackPicture()
+{
+  const DepthGrid seen = pictureOf({});
+  return makeGrid(seen.width, seen.height, seen.camera);
+}
+
+TEST(Obstacles, ACameraInTheBinHasNotSeenWhatIsBesideItsPicture)
+{
+  // The rim 100 mm behind the camera, and a picture of the left half.
+  Bin deep = binBelowCamera();
+  deep.inner_size.z() = 0.9;
+  const DepthGrid whole = blackPicture();
+  const DepthGrid half = makeGrid(128, whole.height, whole.camera);
+  const std::vector<PlacedPart> parts = {{&block(), inCamera({-0.1, 0, 0.015})}};
+  const Obstacles obstacles(&half, &deep, parts, {}, Executor(1));
+  EXPECT_EQ(obstacles.approach(twoFingers(), wayDown({0.06, 0, 0.02}, 0.05), 0).kind, ObstacleKind::Unknown);
+  // Farther out than the corners of the floor, which alone have a place in the picture.
+  EXPECT_EQ(obstacles.approach(twoFingers(), wayDown({0.1, 0, 0.55}, 0.05), 0).kind, ObstacleKind::Unknown);
+}
+
+TEST(Obstacles, WhatTheNearWallHidesIsNotFree)
+{
+  // A camera 1 m before the wall at -y and half a metre above the rim does not see the floor behind that wall.
+  Pose T_bin_camera = Pose::Identity();
+  T_bin_camera.translation() = Vector3d(0, -1, 0.62);
+  const Vector3d forward = -T_bin_camera.translation().normalized();
+  T_bin_camera.linear() << Vector3d::UnitX(), forward.cross(Vector3d::UnitX()), forward;
+  Bin bin = binBelowCamera();
+  bin.T_camera_bin = T_bin_camera.inverse();
+  Gripper peg = twoFingers();
+  peg.bodies = {peg.bodies[1]};
+  peg.bodies[0].placements = {{}};
+  peg.bodies[0].shape = makeBox({0, 0, 0.19}, {0.01, 0.01, 0.02});
+  ToolMotion way;
+  way.T_camera_tool0 = bin.T_camera_bin * Translation3d(0, -0.09, 0.01) * Eigen::AngleAxisd(M_PI, Vector3d::UnitX()) *
+                       Translation3d(0, 0, -0.2);
+  way.motion_camera = 0.002 * way.T_camera_tool0.linear().col(2);
+  const DepthGrid black = blackPicture();
+  const std::vector<PlacedPart> parts = {{&block(), bin.T_camera_bin * Translation3d(0.1, 0.1, 0.015)}};
+  const Clearance clearance = Obstacles(&black, &bin, parts, {}, Executor(1)).approach(peg, way, 0);
+  EXPECT_EQ(clearance.kind, ObstacleKind::Unknown) << clearance.distance << " " << clearance.obstacle;
+  // The same peg in front of the wall is not in the bin.
+  way.T_camera_tool0.pretranslate(bin.T_camera_bin.linear() * Vector3d(0, -0.06, 0));
+  EXPECT_TRUE(Obstacles(&black, &bin, parts, {}, Executor(1)).approach(peg, way, 0).free());
+}
+
 TEST(Obstacles, WithoutBinAndCloudOnlyPartsAreKnown)
 {
   Scene scene;
@@ -455,6 +521,67 @@ TEST(Obstacles, MisuseIsNamed)
   EXPECT_THROW(Obstacles(nullptr, nullptr, {}, wrong, Executor(1)), ParameterError);
 }
 
+TEST(Obstacles, WhatIsNotFiniteIsRefused)
+{
+  const Scene scene;
+  const Obstacles obstacles = scene.obstacles();
+  // The last is finite, but not in single precision.
+  for (const double wrong : {std::nan(""), std::numeric_limits<double>::infinity(), 1e300})
+  {
+    ToolMotion way = wayDown(GRASP, OPENING);
+    way.T_camera_tool0.translation().y() = wrong;
+    EXPECT_THROW(obstacles.approach(twoFingers(), way, 0), ParameterError);
+    EXPECT_THROW(obstacles.closing(twoFingers(), way.T_camera_tool0, OPENING, WIDTH, 0), ParameterError);
+    EXPECT_THROW(obstacles.leaving(shapeAt(twoFingers(), WIDTH), way, 0), ParameterError);
+    way = wayDown(GRASP, OPENING);
+    way.motion_camera.x() = wrong;
+    EXPECT_THROW(obstacles.approach(twoFingers(), way, 0), ParameterError);
+    EXPECT_THROW(obstacles.retreat(twoFingers(), way, 0), ParameterError);
+    EXPECT_THROW(obstacles.pulledOut(way.motion_camera, 0), ParameterError);
+    EXPECT_THROW(obstacles.approach(twoFingers(), wayDown(GRASP, wrong), 0), ParameterError);
+    Gripper rigid = twoFingers();
+    for (GripperBody& body : rigid.bodies)
+      body.placements = {{}};
+    EXPECT_THROW(obstacles.closing(rigid, toolAt(GRASP), OPENING, wrong, 0), ParameterError);
+    EXPECT_THROW(obstacles.closing(rigid, toolAt(GRASP), wrong, WIDTH, 0), ParameterError);
+
+    const auto make = [&](const Bin& bin, const Pose& T_camera_object) {
+      Obstacles(nullptr, &bin, {{&block(), T_camera_object}}, {}, Executor(1));
+    };
+    const Bin bin = binBelowCamera();
+    const Pose pose = inCamera(GRASP);
+    EXPECT_NO_THROW(make(bin, pose));
+    Pose wrong_pose = pose;
+    wrong_pose.linear()(1, 2) = wrong;
+    EXPECT_THROW(make(bin, wrong_pose), ParameterError);
+    Bin wrong_bin = bin;
+    wrong_bin.T_camera_bin.translation().z() = wrong;
+    EXPECT_THROW(make(wrong_bin, pose), ParameterError);
+    wrong_bin = bin;
+    wrong_bin.inner_size.y() = wrong;
+    EXPECT_THROW(make(wrong_bin, pose), ParameterError);
+    wrong_bin = bin;
+    wrong_bin.wall_thickness = wrong;
+    EXPECT_THROW(make(wrong_bin, pose), ParameterError);
+  }
+}
+
+TEST(Obstacles, WhatIsNoNumberIsWorseThanAnyDistance)
+{
+  Encounter unknown;
+  unknown.distance = std::numeric_limits<float>::quiet_NaN();
+  Encounter deep;
+  deep.distance = -1;
+  Encounter worst;
+  keepWorse(worst, unknown);
+  EXPECT_TRUE(std::isnan(worst.distance));
+  keepWorse(worst, deep);
+  EXPECT_TRUE(std::isnan(worst.distance));
+  EXPECT_FALSE(worst.free());
+  keepWorse(deep, unknown);
+  EXPECT_TRUE(std::isnan(deep.distance));
+}
+
 BinOfGrasps::Kind demoKind(const std::string& name)
 {
   BinOfGrasps::Kind kind;
@@ -470,45 +597,81 @@ BinOfGrasps::Kind demoKind(const std::string& name)
   return kind;
 }
 
+/// How deep the gripper truly gets into parts on ways that are called free.
+struct Tally
+{
+  /// \param depth metres; asked for where it counts only, since it takes long
+  template <typename Depth>
+  void add(const Clearance& clearance, const Depth& depth)
+  {
+    if (!clearance.free())
+      return;
+    ++called_free;
+    deepest = std::max(deepest, depth());
+  }
+
+  int called_free = 0;
+  double deepest = 0;  ///< metres
+};
+
+struct Tallies
+{
+  Tally in, closing, out;
+};
+
 TEST(ObstaclesAgainstTruth, NoGraspIsCalledFreeThatIsNot)
 {
   // All that is not detected counts as well; poses are off by 0.3 mm and 0.2 degrees (standard deviations).
   const Gripper gripper = loadGripper(std::string(BIN_PICKING_SOURCE_DIR) + "/config/grippers/ag95.yaml");
   simulation::CellParameters cell;
-  // With little room to spare, so that a wrong verdict is not hidden by it.
-  ObstacleParameters parameters;
-  parameters.surface_clearance = parameters.part_clearance = 0.0005;
-  parameters.target_clearance = 0;
-  int called_free = 0;
+  // Once with little room to spare, so that a wrong verdict is not hidden by it.
+  ObstacleParameters tight;
+  tight.surface_clearance = tight.part_clearance = 0.0005;
+  tight.target_clearance = 0;
+  Tallies with_little_room;
+  Tallies by_default;
   int truly_free = 0;
   int both = 0;
   for (const std::uint32_t seed : {1u, 2u, 3u})
   {
     BinOfGrasps bin({demoKind("three_way_tube")}, {15}, seed, cell, {});
     ASSERT_GE(bin.placed.size(), 3u);
-    const Obstacles one(&bin.measured, &bin.bin, bin.placed, parameters, Executor(1));
-    const Obstacles two(&bin.measured, &bin.bin, bin.placed, parameters, Executor(2));
-    for (int i = 0; i < 700; ++i)
+    const Obstacles one(&bin.measured, &bin.bin, bin.placed, tight, Executor(1));
+    const Obstacles two(&bin.measured, &bin.bin, bin.placed, tight, Executor(2));
+    const Obstacles usual(&bin.measured, &bin.bin, bin.placed, {}, Executor(1));
+    for (int i = 0; i < 500; ++i)
     {
       const test::TriedGrasp grasp = bin.randomGrasp(gripper);
       const Clearance clearance = one.approach(gripper, grasp.approach, grasp.target);
       const Clearance again = two.approach(gripper, grasp.approach, grasp.target);
       EXPECT_EQ(clearance.distance, again.distance);
       EXPECT_EQ(clearance.obstacle, again.obstacle);
-      if (clearance.kind == ObstacleKind::BinWall || clearance.kind == ObstacleKind::BinFloor)
-        continue;
       const double depth = test::trueApproachDepth(bin, gripper, grasp);
-      called_free += clearance.free();
-      truly_free += depth == 0;
-      both += clearance.free() && depth == 0;
-      if (clearance.free())
+      const bool is_bin = clearance.kind == ObstacleKind::BinWall || clearance.kind == ObstacleKind::BinFloor;
+      if (clearance.free() || !is_bin)  // the truth leaves out the bin
       {
-        EXPECT_LT(depth, 0.001) << "bin " << seed << " grasp " << i;
+        truly_free += depth == 0;
+        both += clearance.free() && depth == 0;
+      }
+      const ToolShape closing = closingShape(gripper, grasp.approach.opening, grasp.retreat.opening);
+      const ToolShape closed = shapeAt(gripper, grasp.retreat.opening);
+      for (const auto& [obstacles, tallies] : {std::pair(&one, &with_little_room), std::pair(&usual, &by_default)})
+      {
+        tallies->in.add(obstacles->approach(gripper, grasp.approach, grasp.target), [&] { return depth; });
+        tallies->closing.add(obstacles->closing(closing, grasp.retreat.T_camera_tool0, grasp.target),
+                             [&] { return test::trueClosingDepth(bin, gripper, grasp); });
+        tallies->out.add(obstacles->leaving(closed, grasp.retreat, grasp.target),
+                         [&] { return test::trueRetreatDepth(bin, gripper, grasp); });
       }
     }
   }
+  for (const Tallies* tallies : {&with_little_room, &by_default})
+    for (const Tally* tally : {&tallies->in, &tallies->closing, &tallies->out})
+    {
+      EXPECT_GT(tally->called_free, 50);
+      EXPECT_LT(tally->deepest, 0.0005);
+    }
   // Not by refusing everything.
-  EXPECT_GT(called_free, 50);
   EXPECT_GT(both, 0.6 * truly_free);
 }
 }  // namespace

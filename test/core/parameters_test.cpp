@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <limits>
+
 #include "bin_picking_perception/common/error.hpp"
 
 namespace bin_picking
@@ -98,6 +101,25 @@ TEST(Parameters, refusesWithASentenceAndLeavesTheValueAlone)
   EXPECT_NE(messageOf([&] { setParameter(visit, "no equals sign"); }), "");
   EXPECT_EQ(outer.count, 5);
   EXPECT_DOUBLE_EQ(outer.inner.step, 0.0025);
+}
+
+TEST(Parameters, checksAWholeStruct)
+{
+  const auto message = [](const std::function<void(Outer&)>& change) {
+    Outer outer;
+    change(outer);
+    const std::string text = messageOf([&] { checkRanges(outer); });
+    EXPECT_EQ(areWithinRanges(visitor(outer)), text.empty()) << text;
+    return text;
+  };
+  EXPECT_EQ(message([](Outer&) {}), "");
+  EXPECT_EQ(message([](Outer& o) { o.inner.step = 0.1; }), "");
+  EXPECT_NE(message([](Outer& o) { o.count = 11; }).find("count"), std::string::npos);
+  EXPECT_NE(message([](Outer& o) { o.share = -0.1; }).find("share"), std::string::npos);
+  EXPECT_NE(message([](Outer& o) { o.color = static_cast<Color>(7); }).find("color"), std::string::npos);
+  EXPECT_NE(message([](Outer& o) { o.inner.step = 1; }).find("inner/step"), std::string::npos);
+  for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    EXPECT_NE(message([&](Outer& o) { o.inner.angle = wrong; }).find("inner/angle"), std::string::npos) << wrong;
 }
 
 TEST(Parameters, yamlNamesTheLineOfAMistake)

@@ -60,7 +60,6 @@ TEST_F(ReachOfUr5e, picksInABinInFrontAreReached)
         ASSERT_EQ(result.joints.size(), 3u);
         for (std::size_t w = 0; w < 3; ++w)
           EXPECT_LT(difference(kinematics_.forward(result.joints[w]), request.waypoints_base_tool0[w]), 1e-9);
-        EXPECT_GT(result.singularity, 0.1);
       }
 }
 
@@ -101,12 +100,46 @@ TEST_F(ReachOfUr5e, theBranchNearestToHomeIsTaken)
   EXPECT_LT((result.joints[0] - robot_.home).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+// Within its limits a joint may have to turn the long way round: then another branch is nearer.
+TEST_F(ReachOfUr5e, theLimitsCountForWhatIsNearest)
+{
+  Robot robot = robot_;
+  robot.lower[5] = -M_PI;
+  robot.upper[5] = M_PI;
+  robot.home = test::degrees(0, -90, 90, -90, -90, 170);
+  const Kinematics kinematics(robot);
+  // Without limits 30 degrees from home by wrist_3 alone; with them 330.
+  const Pose pose = kinematics.forward(test::degrees(0, -90, 90, -90, -90, 200));
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Joints& joints : kinematics.inverse(pose))
+    nearest = std::min(nearest, (joints - robot.home).squaredNorm());
+  ASSERT_LT(nearest, std::pow(329 * M_PI / 180, 2));
+  const Reach result = reach(kinematics, {{pose}});
+  ASSERT_EQ(result.failure, Reach::Failure::None) << result.reason;
+  EXPECT_NEAR((result.joints[0] - robot.home).squaredNorm(), nearest, 1e-9);
+}
+
+TEST_F(ReachOfUr5e, theDistanceThatIsToldIsThatOfTheBranch)
+{
+  int told = 0;
+  for (double x = 0.1; x <= 1.0; x += 0.02)
+    for (double z = -0.2; z <= 0.8; z += 0.1)
+      for (const double tilt : {-0.5, 0.0, 0.5})
+      {
+        const Reach result = reach(kinematics_, pick(downAt(robot_, x, 0.1, z, 0.4, tilt)));
+        if (result.failure != Reach::Failure::OutOfReach && result.failure != Reach::Failure::NoSolution)
+          continue;
+        ++told;
+        test::expectTrueOfLength(robot_, result.failure == Reach::Failure::OutOfReach, result.reason);
+      }
+  EXPECT_GT(told, 100);
+}
+
 TEST_F(ReachOfUr5e, tooFarNamesWaypointAndDistances)
 {
   const Reach result = reach(kinematics_, pick(downAt(robot_, 0.95, 0, 0.2)));
   EXPECT_EQ(result.failure, Reach::Failure::OutOfReach);
   EXPECT_TRUE(result.joints.empty());
-  EXPECT_TRUE(std::isnan(result.singularity));
   expectWords(result.reason, {"At the pre-grasp", "from the shoulder", "the UR5e reaches 0.817 m"});
   // Here only the end of the retreat is too far.
   ReachRequest request = pick(downAt(robot_, 0.6, 0, 0.2));
@@ -194,6 +227,21 @@ TEST_F(ReachOfUr5e, refusesPosesThatAreNone)
   ReachRequest request = pick(downAt(robot_, 0.5, 0, 0.2));
   request.waypoints_base_tool0[1].translation().y() = std::numeric_limits<double>::quiet_NaN();
   expectWords(messageOf<ParameterError>([&] { reach(kinematics_, request); }), {"waypoint 2", "not finite"});
+}
+
+// A step of 0 or backwards would look at the ends of the way only.
+TEST_F(ReachOfUr5e, refusesParametersOutOfTheirRange)
+{
+  const ReachRequest request = pick(downAt(robot_, 0.5, 0, 0.2));
+  for (const double step : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
+  {
+    ReachParameters parameters;
+    parameters.path_step = step;
+    expectWords(messageOf<ParameterError>([&] { reach(kinematics_, request, parameters); }), {"path_step"});
+  }
+  ReachParameters parameters;
+  parameters.min_wrist_angle = std::numeric_limits<double>::quiet_NaN();
+  expectWords(messageOf<ParameterError>([&] { reach(kinematics_, request, parameters); }), {"min_wrist_angle"});
 }
 
 TEST_F(ReachOfUr5e, parametersAreDocumentedAndChecked)

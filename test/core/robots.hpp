@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <random>
 #include <string>
 #include <vector>
@@ -37,6 +39,22 @@ inline Joints randomJoints(const Robot& robot, std::mt19937& random)
   for (int k = 0; k < 6; ++k)
     joints[k] = std::uniform_real_distribution<double>(robot.lower[k], robot.upper[k])(random);
   return joints;
+}
+
+/// What is said of a length must be true of it: the number of metres that follows "would be".
+inline void expectTrueOfLength(const Robot& robot, bool too_far, const std::string& sentence)
+{
+  const std::string before = "would be ";
+  const double length = std::stod(sentence.substr(sentence.find(before) + before.size()));
+  if (too_far)
+  {
+    EXPECT_GT(length, std::abs(robot.dh[1].a + robot.dh[2].a)) << sentence;
+    EXPECT_NE(sentence.find(" reaches "), std::string::npos) << sentence;
+  }
+  else if (sentence.find("fold closer") != std::string::npos)
+    EXPECT_LT(length, std::abs(robot.dh[1].a - robot.dh[2].a)) << sentence;
+  else
+    EXPECT_LT(length, robot.dh[3].d) << sentence;
 }
 
 /// Largest difference of two poses' entries: metres and (small) radians.

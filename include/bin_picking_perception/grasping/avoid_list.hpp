@@ -52,7 +52,8 @@ struct AvoidedPlace
 /// A place is forgotten after a time, after some successful picks anywhere (the pile has changed, and with it what was
 /// in the way), at once by a successful pick within its radius, or when clear() is called. An attempt that was not made
 /// changes nothing in the bin: its place is forgotten sooner, so that other parts come first and this one again.
-/// A failure within the radius of an older one replaces it; there are never more than MAX_PLACES, the oldest gives way.
+/// A failure within the radius of an older one replaces it, but an attempt that was not made does not replace one that
+/// lasts longer. There are never more than MAX_PLACES, the oldest gives way.
 ///
 /// Knows neither clock nor frames: times are the caller's, any that do not run backwards; centres are in one frame in
 /// which the bin stands still (the bin's or the robot's, not that of a camera on the arm). The same calls give the same
@@ -81,6 +82,7 @@ public:
 
 private:
   void forgetNear(const Eigen::Vector3d& center);
+  bool lastsNear(const Eigen::Vector3d& center, double until) const;
 
   AvoidParameters parameters_;
   std::vector<AvoidedPlace> places_;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@
 
 namespace bin_picking
 {
+class SurfaceBlocks;
+
 /// When a grasp that was written down fits its part.
 struct GraspCheckParameters
 {
@@ -60,7 +63,8 @@ struct GraspCheck
   double offset = 0;     ///< of the part's middle from the tip, along the closing axis, metres
   PadContact right;      ///< of the pad at +Y
   PadContact left;       ///< of the pad at -Y
-  double clearance = 0;  ///< of the open gripper on the way in, metres; negative: how deep it would cut
+  double clearance = 0;  ///< of the open gripper on the way in, metres; negative: how deep it would cut. The smallest
+                         ///< of all turns that were looked at, and so are the next two
   std::string closest;   ///< the gripper's body that is there
   Eigen::Vector3d closest_at = Eigen::Vector3d::Zero();  ///< where, in the part's frame, metres
   std::vector<Finding> findings;                         ///< empty: the grasp holds
@@ -74,14 +78,19 @@ const char* toString(GraspCheck::Fault fault);
 ///
 /// Width and contact come from rays along the closing axis, `resolution` apart, through all that both pads cover: the
 /// triangles that they meet are exact, so that a flat face is measured to rounding. The ways in and of closing are
-/// looked at with points of the surface (vertices, and samples `surface_spacing` apart) against the convex pieces of
-/// the gripper as they sweep; a spike thinner than that may be missed.
+/// looked at with points of the surface (vertices, and samples `surface_spacing` apart) against all that the convex
+/// pieces of the gripper sweep; a spike thinner than the spacing may be missed. The pads close to 1 mm from the stated
+/// width on either side, the other bodies all the way.
 class GraspChecker
 {
 public:
   /// \param mesh closed, outward; both must outlive the checker
-  /// \throws ParameterError an empty mesh; a gripper without fingers' pads (bodies with touches_part, on either side)
+  /// \throws ParameterError a parameter out of its range; an empty mesh; a gripper without a pad (body with
+  /// touches_part) on either side of its tip
   GraspChecker(const TriangleMesh& mesh, const Gripper& gripper, const GraspCheckParameters& parameters = {});
+
+  // All throw ParameterError for a width that the gripper does not open to, measure() and approach() also for an
+  // opening or a width that check() tells as a finding.
 
   /// The grasp with the tip at a pose; width, opening and approach are those of the definition.
   GraspCheck check(const GraspDefinition& grasp, const Pose& T_object_tip) const;
@@ -100,11 +109,10 @@ private:
   double closing(const GraspDefinition& grasp, const Pose& T_object_tip, double offset, std::string& body) const;
   GraspCheck::Finding wayInFinding(const GraspDefinition& grasp, const Pose& T_object_tip,
                                    const GraspCheck& result) const;
-  std::vector<Eigen::Vector3d> surfaceIn(const Pose& T_object_tip) const;
 
   const TriangleMesh& mesh_;
   const Gripper& gripper_;
   GraspCheckParameters parameters_;
-  std::vector<Eigen::Vector3f> surface_;
+  std::shared_ptr<const SurfaceBlocks> surface_;
 };
 }  // namespace bin_picking

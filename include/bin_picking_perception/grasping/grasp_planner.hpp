@@ -21,8 +21,9 @@ namespace bin_picking
 struct PreparedPart;
 
 /// From detections to grasps that a robot can take: each grasp of each part, expanded by symmetry and tolerance, is
-/// held against what a person would check, in this order: the detection, the gripper's opening, the avoid list, the
-/// tilt, the collisions of the whole way, the robot's reach. What remains is ranked. Immutable; thread-safe.
+/// held against what a person would check, in this order: the detection (matching rate, open turn, avoid list), the
+/// gripper's kind and opening, the tilt, the collisions of gripper and held part on the whole way, the robot's reach.
+/// What remains is ranked. Immutable; thread-safe.
 ///
 /// What is written comes first: copies turned or tilted by a tolerance are tried for detections that have no other
 /// grasp, in their order, as long as the answer has room (max_grasps), and up to a few for each.
@@ -51,6 +52,7 @@ public:
     const std::vector<std::shared_ptr<const TrainedModel>>& models;  ///< that Detection::model_index points into
     const Bin* bin = nullptr;           ///< nullptr: no wall check; tilt is measured against the view direction
     std::optional<Pose> T_base_camera;  ///< of the robot's DH base; needed where reach is checked
+    bool without_cloud = false;         ///< collisions with the bin and the detected parts alone, knowingly
   };
 
   struct Request
@@ -63,7 +65,8 @@ public:
     std::size_t max_grasps = 0;  ///< fewer than the parameter; 0: that many
   };
 
-  /// \throws ParameterError reach is to be checked, but T_base_camera is missing
+  /// \throws ParameterError reach is to be checked, but T_base_camera is missing; collisions are, but the detection has
+  /// no surroundings; a pose that is not finite
   GraspSelection plan(const Scene& scene, const Request& request) const;
 
   const Setup& setup() const { return setup_; }

@@ -20,8 +20,8 @@ double attitudeCoverage(const std::vector<GraspVariant>& variants, double max_ti
 /// opposed within the cone of friction and the gripper is wide enough. Around each such axis approaches are tried every
 /// 30 degrees, centred and measured with the pads. Chosen one after the other is what adds most attitudes (with its
 /// symmetric copies and a tilt tolerance of up to 30 degrees, if that holds), weighted with contact area and nearness
-/// to the middle of the part. \return at most `count`; fewer if there are no more that add an attitude \throws
-/// ParameterError count < 1, or as GraspChecker
+/// to the middle of the part, and down to half the wider the gripper has to open. \return at most `count`; fewer if
+/// there are no more that add an attitude \throws ParameterError count < 1, or as GraspChecker
 std::vector<GraspDefinition> proposeGrasps(const PartDefinition& part, const TriangleMesh& mesh, const Gripper& gripper,
                                            const GraspCheckParameters& parameters, int count, const Executor& executor);
 

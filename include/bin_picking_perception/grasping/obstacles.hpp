@@ -56,8 +56,9 @@ constexpr char HELD_PART[] = "held part";
 struct Clearance
 {
   /// Signed, metres; < 0: how deep the body reaches in. Apart, a lower bound, exact where a face is nearest; infinite
-  /// where nothing is near (20 mm for the bin, 4 mm for the rest). Of unseen space: only what exceeds the entry
-  /// allowed.
+  /// where nothing is near (20 mm for the bin, or bin_clearance if that is more; 4 mm for the rest). Of unseen space:
+  /// only what exceeds the entry allowed. Of the held part: how much deeper than at rest, negative; among parts and
+  /// measured points the search ends beyond max_drag, so that more than that is only a bound.
   double distance = std::numeric_limits<double>::infinity();
   double required = 0;  ///< of that kind of obstacle, metres
   ObstacleKind kind = ObstacleKind::None;
@@ -94,8 +95,11 @@ struct ToolMotion
 /// not
 ///   free: a body may enter it by `unseen_entry` only, by `shadow_entry` where the target itself hides it.
 /// - Pixels without a measurement are bridged by a straight line between the measured points left and right, and above
-///   and below, whichever is nearer to the camera; nothing behind that sheet is free. What lies beyond the picture is
-///   unknown below the bin's rim, and free above it; without a bin it is not checked.
+///   and below, whichever is nearer to the camera; nothing behind that sheet is free. Beyond the picture the inside of
+///   the bin is unknown, and what a wall hides of it; the rest is free. That holds for rays up to two sizes of the
+///   picture beside it; farther out, and anywhere beside it without a bin, nothing is checked.
+///
+/// What is not finite is never free: such a pose, motion, opening or bin is refused.
 ///
 /// A check stops at the first body that comes too near: the clearance then names that body's worst obstacle.
 class Obstacles
@@ -105,15 +109,18 @@ public:
   ///   nullptr: no cloud check
   /// \param bin nullptr: none
   /// \param parts all accepted detections, in their order; the target is one of them
-  /// \throws ParameterError a parameter out of its range, a part without model
+  /// \throws ParameterError a parameter out of its range, a part without model, a pose or a bin that is not finite
   Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<PlacedPart> parts,
             const ObstacleParameters& parameters, const Executor& executor);
   ~Obstacles();
   Obstacles(Obstacles&&) noexcept;
   Obstacles& operator=(Obstacles&&) noexcept;
 
-  /// The way in, all bodies at the motion's opening, against everything; the target too.
-  /// \param target index of the part to be taken. \throws ParameterError no such part, no bodies, an impossible opening
+  // All throw ParameterError for a target that is no part, a gripper without bodies, an opening that it does not have,
+  // and a pose or a motion that is not finite.
+
+  /// The way in, all bodies at the motion's opening, against everything; the target too, but for the lip of a suction
+  /// gripper, which is pressed on it. \param target index of the part to be taken
   Clearance approach(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const;
 
   /// The fingers move from one opening to another, the flange rests. Bodies that touch the part may touch the target.

@@ -14,14 +14,15 @@ namespace bin_picking
 struct ToolPiece
 {
   std::string body;       ///< name of the gripper's body
-  bool may_touch_target;  ///< it closes on it
+  bool may_touch_target;  ///< it closes on it, or is the lip that is pressed on it
   ConvexBody shape;
 };
 
 /// First the bodies that touch the part: they are in front, and the most likely to meet something.
 using ToolShape = std::vector<ToolPiece>;
 
-/// The bodies at an opening. \throws ParameterError no bodies, or an opening that the gripper does not have
+/// The bodies at an opening. Of a suction gripper those that touch the part may do so on the whole way. \throws
+/// ParameterError no bodies, or an opening that the gripper does not have
 ToolShape shapeAt(const Gripper& gripper, double opening);
 
 /// What the moving bodies cover from one opening to another. Between the rows of its table a body moves straight; where

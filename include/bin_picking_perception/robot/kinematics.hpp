@@ -50,19 +50,22 @@ public:
   /// The same, nearest to the robot's home.
   std::vector<Joints> inverse(const Pose& T_base_tool0) const { return inverse(T_base_tool0, robot_.home); }
 
-  /// Turns each joint by whole turns to the value within its limits that is nearest to the reference.
+  /// Turns each joint by whole turns to the value within its limits that is nearest to the reference, wherever that is.
   /// \return index of the first joint that has no such value; -1: none, and `joints` is changed
   int fitIntoLimits(Joints& joints, const Joints& reference) const;
 
   SingularityMargin singularityMargin(const Joints& joints) const;
 
-  /// Why no branch takes a pose, in a sentence with numbers.
+  /// Why a pose is not taken, in a sentence with numbers.
   struct Fault
   {
     bool too_far = false;  ///< beyond the arm's length; otherwise too near to its shoulder
     std::string sentence;
   };
+  /// Where no branch takes it: why the one that misses it by the least does not.
   Fault fault(const Pose& T_base_tool0) const;
+  /// Why one branch does not take it, with the parameters of branch().
+  Fault fault(int branch, const Pose& T_base_tool0, const Joints& reference) const;
 
 private:
   /// The arm without its elbow: upper arm and forearm lie in a plane at a right angle to the axis of shoulder_lift (z

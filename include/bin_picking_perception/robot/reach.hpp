@@ -44,19 +44,17 @@ struct Reach
   std::size_t waypoint = 0;    ///< that fails, or towards which the way fails
   std::string reason;          ///< one sentence with the numbers; empty if there is no failure
   std::vector<Joints> joints;  ///< one per waypoint, one branch, continuous between them; empty on failure
-  /// Smallest value on the way of: sine of wrist_2, sine of the elbow, distance of the wrist from the plane of the
-  /// shoulder's axes over the arm's length. 0 is singular; NaN on failure.
-  double singularity = 0;
 };
 
 /// Whether the arm can follow the straight lines in one branch, and its joints.
 ///
 /// Poses are tried every path_step along the lines; in between no joint moves more than max_joint_step, so that a
 /// motion command between the waypoints finds the same way. Of the branches that pass, the one whose first waypoint is
-/// nearest to the home pose (sum of squares of the joint differences) is taken, the lower branch where they are equal:
+/// nearest to the home pose (sum of squares of the joint differences, within the joints' limits) is taken, the lower
+/// branch where they are equal:
 /// the same request always has the same answer. Of a failure, the branch that comes farthest is reported. Collisions of
 /// the arm itself are not looked at.
-/// \throws ParameterError no waypoints, or one that is not rigid or not finite
+/// \throws ParameterError a parameter out of its range; no waypoints, or one that is not rigid or not finite
 Reach reach(const Kinematics& kinematics, const ReachRequest& request, const ReachParameters& parameters = {});
 
 /// "none", "out_of_reach", ... for logs and messages.

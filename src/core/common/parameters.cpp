@@ -147,7 +147,38 @@ private:
   std::string text_;
   bool found_ = false;
 };
+
+/// Whether each value is one that could be set; without a text of any.
+class RangeProbe : public ParameterVisitor
+{
+public:
+  using ParameterVisitor::field;
+  void field(const ParameterInfo& info, double& value) override { look(info, value); }
+  void field(const ParameterInfo& info, int& value) override { look(info, value); }
+  void field(const ParameterInfo&, bool&) override {}
+  void field(const ParameterInfo&, std::string& value, const std::vector<std::string>& choices) override
+  {
+    all_within = all_within && (choices.empty() || std::find(choices.begin(), choices.end(), value) != choices.end());
+  }
+
+  bool all_within = true;
+
+private:
+  void look(const ParameterInfo& info, double value)
+  {
+    all_within = all_within && std::isfinite(value) && value >= info.min && value <= info.max;
+  }
+  void enter(const std::string&) override {}
+  void leave() override {}
+};
 }  // namespace
+
+bool areWithinRanges(const VisitFunction& visit)
+{
+  RangeProbe probe;
+  visit(probe);
+  return probe.all_within;
+}
 
 void setParameter(const VisitFunction& visit, const std::string& path, const std::string& text)
 {

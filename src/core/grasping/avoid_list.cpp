@@ -61,6 +61,9 @@ void AvoidList::report(PickOutcome outcome, const Eigen::Vector3d& center, doubl
     return;
   const double duration =
       outcome == PickOutcome::NotAttempted ? parameters_.duration_not_attempted : parameters_.duration;
+  // That the robot did not try again says nothing against what it met there before.
+  if (outcome == PickOutcome::NotAttempted && lastsNear(center, now + duration))
+    return;
   forgetNear(center);
   if (places_.size() >= MAX_PLACES)
     places_.erase(places_.begin());
@@ -77,6 +80,12 @@ void AvoidList::forgetNear(const Eigen::Vector3d& center)
 {
   const auto near = [&center](const AvoidedPlace& p) { return (p.center - center).norm() <= p.radius; };
   places_.erase(std::remove_if(places_.begin(), places_.end(), near), places_.end());
+}
+
+bool AvoidList::lastsNear(const Eigen::Vector3d& center, double until) const
+{
+  return std::any_of(places_.begin(), places_.end(),
+                     [&](const AvoidedPlace& p) { return (p.center - center).norm() <= p.radius && p.until > until; });
 }
 
 const AvoidedPlace* AvoidList::find(const Eigen::Vector3d& point) const

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <vector>
 
 #include "bin_picking_perception/grasping/convex_body.hpp"
@@ -44,10 +45,11 @@ struct Encounter
   bool free() const { return distance >= required; }
 };
 
-/// Keeps the one that matters more.
+/// Keeps the one that matters more. Most of all matters what is not a number: nothing is known of it, so that it is
+/// never free.
 inline void keepWorse(Encounter& worst, const Encounter& other)
 {
-  if (other.margin() < worst.margin())
+  if (!std::isnan(worst.margin()) && !(other.margin() >= worst.margin()))
     worst = other;
 }
 

@@ -59,23 +59,24 @@ const char* parameterOf(ObstacleKind kind)
 std::string passage(const Clearance& closest)
 {
   const std::string body = "the " + closest.body + " would ";
-  if (closest.body == HELD_PART)
-    return body + "get " + millimetres(-closest.distance) + " deeper into the " + closest.obstacle +
-           " than it is at rest; at most " + millimetres(-closest.required) + " are allowed (max_drag).";
+  if (closest.body == HELD_PART)  // how much more is not looked for
+    return body + "get more than " + millimetres(-closest.required) + " deeper into the " + closest.obstacle +
+           " than it is at rest; no more is allowed (max_drag).";
   if (closest.kind == ObstacleKind::Unknown)
-    return body + "reach " + millimetres(-closest.distance) + " farther into the " + closest.obstacle +
-           " than is allowed (unseen_entry; shadow_entry behind the part itself).";
-  const std::string passes = closest.distance < 0 ? "reach " + millimetres(-closest.distance) + " into the "
-                                                  : "pass at " + millimetres(closest.distance) + " from the ";
-  const std::string limit = closest.required < 0 ? "at most " + millimetres(-closest.required) + " into it are allowed"
-                                                 : "at least " + millimetres(closest.required) + " are required";
-  return body + passes + closest.obstacle + "; " + limit + " (" + parameterOf(closest.kind) + ").";
+    return body + "reach " + toldApart(closest.distance, 0, millimetres).figure + " farther into the " +
+           closest.obstacle + " than is allowed (unseen_entry; shadow_entry behind the part itself).";
+  const auto [figure, limit] = toldApart(closest.distance, closest.required, millimetres);
+  const std::string passes =
+      closest.distance < 0 ? "reach " + figure + " into the " : "pass at " + figure + " from the ";
+  const std::string allowed =
+      closest.required < 0 ? "at most " + limit + " into it are allowed" : "at least " + limit + " are required";
+  return body + passes + closest.obstacle + "; " + allowed + " (" + parameterOf(closest.kind) + ").";
 }
 
 /// Keeps the passage that leaves the least room beyond what is required.
 bool passes(Grasp& grasp, const Clearance& closest, const char* phase)
 {
-  if (closest.margin() < grasp.clearance.margin())
+  if (!(closest.margin() >= grasp.clearance.margin()))
     grasp.clearance = closest;
   if (closest.free())
     return true;
@@ -113,9 +114,11 @@ Refusal checkDetection(std::size_t index, const GraspSurroundings& s)
   const Detection& detection = s.scene.detection.detections[index];
   const double required = s.setup.parameters.min_matching_rate;
   if (!(detection.matching_rate >= required))
-    return {GraspRejection::MatchingRateTooLow, "The matching rate of the part is " + percent(detection.matching_rate) +
-                                                    ", at least " + percent(required) +
-                                                    " is required (min_matching_rate)."};
+  {
+    const auto [rate, least] = toldApart(detection.matching_rate, required, percent);
+    return {GraspRejection::MatchingRateTooLow,
+            "The matching rate of the part is " + rate + ", at least " + least + " is required (min_matching_rate)."};
+  }
   if (detection.undetermined_turn && !s.request.accept_undetermined_turn)
     return {GraspRejection::UndeterminedTurn, "Of the part, " + describe(*detection.undetermined_turn) +
                                                   "; the caller does not accept that (accept_undetermined_turn)."};
@@ -125,10 +128,10 @@ Refusal checkDetection(std::size_t index, const GraspSurroundings& s)
 
 Refusal steepness(double tilt, const GraspSurroundings& s)
 {
+  const auto [figure, limit] = toldApart(tilt, s.setup.parameters.max_tilt, degrees);
   const char* reference = s.scene.bin ? "straight down into the bin" : "the view direction of the camera";
-  return {GraspRejection::TiltTooLarge, "The approach is tilted by " + degrees(tilt) + " against " + reference +
-                                            ", at most " + degrees(s.setup.parameters.max_tilt) +
-                                            " are allowed (max_tilt)."};
+  return {GraspRejection::TiltTooLarge, "The approach is tilted by " + figure + " against " + reference + ", at most " +
+                                            limit + " are allowed (max_tilt)."};
 }
 
 bool checkGripper(Grasp& grasp, const PreparedGrasp& prepared, const Eigen::Vector3d& out_camera,

@@ -25,15 +25,29 @@ std::string list(const Eigen::Vector3d& v)
 /// What the gripper cannot do, whatever the part.
 std::optional<GraspCheck::Finding> openingFault(const GraspDefinition& grasp, const Gripper& gripper)
 {
+  const std::string name = "the '" + gripper.name + "'";
+  if (grasp.opening == 0)
+    return GraspCheck::Finding{Fault::Opening, "it is one for a suction cup (its opening is 0), " + name +
+                                                   " has fingers; write the opening that these have on the way in"};
   if (grasp.opening > gripper.max_opening)
-    return GraspCheck::Finding{Fault::Opening, "it asks for an opening of " + millimetres(grasp.opening) + ", the '" +
-                                                   gripper.name + "' opens to " + millimetres(gripper.max_opening) +
+  {
+    const auto [opening, most] = toldApart(grasp.opening, gripper.max_opening, millimetres);
+    return GraspCheck::Finding{Fault::Opening, "it asks for an opening of " + opening + ", " + name + " opens to " +
+                                                   most +
                                                    "; write a smaller opening, or grasp where the part is narrower"};
+  }
   if (grasp.width < gripper.min_opening)
-    return GraspCheck::Finding{Fault::Opening, "it holds at a width of " + millimetres(grasp.width) + ", the '" +
-                                                   gripper.name + "' closes to " + millimetres(gripper.min_opening) +
+  {
+    const auto [width, least] = toldApart(grasp.width, gripper.min_opening, millimetres);
+    return GraspCheck::Finding{Fault::Opening, "it holds at a width of " + width + ", " + name + " closes to " + least +
                                                    "; grasp where the part is wider"};
+  }
   return std::nullopt;
+}
+
+std::string squareMillimetres(double square_metres, int digits)
+{
+  return roundedText(1e6 * square_metres, digits) + " mm^2";
 }
 
 void judgeContact(const PadContact& contact, const char* pad, const GraspCheckParameters& parameters,
@@ -41,11 +55,12 @@ void judgeContact(const PadContact& contact, const char* pad, const GraspCheckPa
 {
   if (contact.area >= parameters.min_contact_area)
     return;
+  const auto [area, least] = toldApart(contact.area, parameters.min_contact_area, squareMillimetres, 0);
   result.findings.push_back(
-      {Fault::Contact, "the pad at " + std::string(pad) + " closing holds " + roundedText(1e6 * contact.area, 0) +
-                           " mm^2 of surface that is inclined by no more than the " +
+      {Fault::Contact, "the pad at " + std::string(pad) + " closing holds " + area +
+                           " of surface that is inclined by no more than the " +
                            degrees(std::atan(parameters.friction)) + " of friction (mean " + degrees(contact.angle) +
-                           "), at least " + roundedText(1e6 * parameters.min_contact_area, 0) +
+                           "), at least " + least +
                            " are required; move the grasp to where the surface lies flat on the pad"});
 }
 
@@ -54,9 +69,11 @@ void judgeWidth(const GraspDefinition& grasp, const Pose& T_object_tip, const Gr
                 GraspCheck& result)
 {
   if (std::abs(result.width - grasp.width) > parameters.max_width_error)
-    result.findings.push_back({Fault::Width, "the part is " + millimetres(result.width) +
-                                                 " wide between the pads, not " + millimetres(grasp.width) +
+  {
+    const auto [measured, stated] = toldApart(result.width, grasp.width, millimetres);
+    result.findings.push_back({Fault::Width, "the part is " + measured + " wide between the pads, not " + stated +
                                                  "; write width: " + roundedText(result.width, 4)});
+  }
   if (std::abs(result.offset) > parameters.max_offset)
   {
     const Eigen::Vector3d middle = T_object_tip.translation() + result.offset * T_object_tip.linear().col(1);
@@ -164,12 +181,11 @@ GraspCheck::Finding GraspChecker::wayInFinding(const GraspDefinition& grasp, con
   }
   if (cure.empty())
     cure = "no opening up to " + millimetres(gripper_.max_opening) + " is free: approach from another side";
-  const std::string passage = result.clearance < 0
-                                  ? " would cut " + millimetres(-result.clearance) + " into the part at "
-                                  : " would pass at " + millimetres(result.clearance) + " from the part at ";
+  const auto [figure, least] = toldApart(result.clearance, parameters_.min_clearance, millimetres);
+  const std::string passage = result.clearance < 0 ? " would cut " + figure + " into the part at "
+                                                   : " would pass at " + figure + " from the part at ";
   return {Fault::WayIn, "on the way in, open to " + millimetres(grasp.opening) + ", the " + result.closest + passage +
-                            list(result.closest_at) + " m, at least " + millimetres(parameters_.min_clearance) +
-                            " are required; " + cure};
+                            list(result.closest_at) + " m, at least " + least + " are required; " + cure};
 }
 
 GraspCheck GraspChecker::check(const GraspDefinition& grasp) const
@@ -180,7 +196,12 @@ GraspCheck GraspChecker::check(const GraspDefinition& grasp) const
   for (const GraspVariant& variant : expandTolerances(grasp))
   {
     const GraspCheck turned = check(grasp, variant.T_object_tip);
-    result.clearance = std::min(result.clearance, turned.clearance);
+    if (turned.clearance < result.clearance)
+    {
+      result.clearance = turned.clearance;
+      result.closest = turned.closest;
+      result.closest_at = turned.closest_at;
+    }
     if (turned.good())
       continue;
     result.findings.push_back(

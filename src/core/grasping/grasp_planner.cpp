@@ -92,6 +92,18 @@ GraspSelection ranked(std::vector<DetectionGrasps>&& of_detections, std::size_t 
   return selection;
 }
 
+/// nullptr: it is left out knowingly.
+const DepthGrid* cloudOf(const GraspPlanner::Scene& scene)
+{
+  if (scene.without_cloud)
+    return nullptr;
+  if (!scene.detection.surroundings)
+    throw ParameterError(
+        "The collisions of the gripper are to be checked, but the detection has no surroundings, the measured cloud: "
+        "pass on the whole result of Detector::detect(), or say that there is none (without_cloud).");
+  return scene.detection.surroundings.get();
+}
+
 void checkParameters(GraspPlanner::Setup& setup)
 {
   checkRanges(setup.parameters);
@@ -120,8 +132,7 @@ GraspSelection GraspPlanner::plan(const Scene& scene, const Request& request) co
     throw ParameterError("the reach of the robot is to be checked, but the camera's pose in its base is not given");
   std::optional<Obstacles> obstacles;
   if (request.check_collision)
-    obstacles.emplace(scene.detection.surroundings.get(), scene.bin, placedParts(scene), setup_.parameters.obstacles,
-                      executor_);
+    obstacles.emplace(cloudOf(scene), scene.bin, placedParts(scene), setup_.parameters.obstacles, executor_);
   const GraspSurroundings s{setup_,
                             scene,
                             request,

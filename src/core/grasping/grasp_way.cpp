@@ -1,52 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/grasping/grasp_check.hpp"
+#include "bin_picking_perception/grasping/tool_shape.hpp"
+#include "surface_blocks.hpp"
 
 namespace bin_picking
 {
 namespace
 {
-constexpr double CLOSING_STEP = 0.002;  // metres of the opening
-constexpr double TOUCH = 0.0002;        // metres that a body may cut into samples of a surface that it only touches
+constexpr double PAD_ROOM = 0.002;  // metres of the opening before the width: where the pads' faces may be near
+constexpr float TOUCH = 0.0002f;    // metres that a body may cut into samples of a surface that it only touches
 
-/// A body with the box round it, to pass over points that are farther than the nearest so far.
-struct BoxedBody
+/// Where a pad is along the closing axis of the open gripper, metres.
+double middleOf(std::size_t pad, const Gripper& gripper)
 {
-  explicit BoxedBody(ConvexBody b) : body(std::move(b)), low(body.vertices.front()), high(low)
-  {
-    for (const Eigen::Vector3d& v : body.vertices)
-    {
-      low = low.cwiseMin(v);
-      high = high.cwiseMax(v);
-    }
-  }
+  const Pose T_tip_tool0 = gripper.T_tool0_tip(gripper.max_opening).inverse();
+  const ConvexBody body = transformed(gripper.bodyAt(pad, gripper.max_opening), T_tip_tool0);
+  double sum = 0;
+  for (const Eigen::Vector3d& v : body.vertices)
+    sum += v.y();
+  return sum / static_cast<double>(body.vertices.size());
+}
 
-  ConvexBody body;
-  Eigen::Vector3d low, high;
-};
-
-struct Nearest
+void checkPads(const Gripper& gripper)
 {
-  double distance = std::numeric_limits<double>::infinity();
-  std::size_t point = 0;
-};
-
-void findNearest(const BoxedBody& boxed, const std::vector<Eigen::Vector3d>& points, Nearest& nearest)
-{
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    const double outside = (boxed.low - points[i]).cwiseMax(points[i] - boxed.high).maxCoeff();
-    if (outside >= nearest.distance)
-      continue;
-    const double distance = signedDistance(boxed.body, points[i]);
-    if (distance < nearest.distance)
-      nearest = {distance, i};
-  }
+  std::vector<double> middles;
+  for (std::size_t i = 0; i < gripper.bodies.size(); ++i)
+    if (gripper.bodies[i].touches_part)
+      middles.push_back(middleOf(i, gripper));
+  if (gripper.kind != Gripper::Kind::Fingers || middles.size() < 2)
+    throw ParameterError("the gripper '" + gripper.name +
+                         "' has no two fingers (bodies with touches_part: true) between which a part could be checked; "
+                         "grasps of a suction cup are not checked");
+  const auto [lowest, highest] = std::minmax_element(middles.begin(), middles.end());
+  if (!(*lowest < 0 && *highest > 0))
+    throw ParameterError("all pads (bodies with touches_part: true) of the gripper '" + gripper.name +
+                         "' lie on one side of its tip along the closing axis Y, so that no part could be held between "
+                         "them; mark the pad of the other finger too, or correct position_xy and rotation_z_deg of the "
+                         "tip");
 }
 }  // namespace
 
@@ -56,71 +51,54 @@ GraspChecker::GraspChecker(const TriangleMesh& mesh, const Gripper& gripper, con
   checkRanges(parameters);
   if (mesh.empty())
     throw ParameterError("the part has no triangles, and its grasps cannot be held against it; use a mesh");
-  const auto isPad = [](const GripperBody& body) { return body.touches_part; };
-  if (gripper.kind != Gripper::Kind::Fingers || std::count_if(gripper.bodies.begin(), gripper.bodies.end(), isPad) < 2)
-    throw ParameterError("the gripper '" + gripper.name +
-                         "' has no two fingers (bodies with touches_part: true) between which a part could be checked; "
-                         "grasps of a suction cup are not checked");
-  surface_ = sampleSurface(mesh, parameters.surface_spacing, 1).points;
-  surface_.insert(surface_.end(), mesh.vertices.begin(), mesh.vertices.end());
-}
-
-std::vector<Eigen::Vector3d> GraspChecker::surfaceIn(const Pose& T_object_tip) const
-{
-  const Pose T_tip_object = T_object_tip.inverse();
-  std::vector<Eigen::Vector3d> points;
-  points.reserve(surface_.size());
-  for (const Eigen::Vector3f& p : surface_)
-    points.push_back(T_tip_object * p.cast<double>());
-  return points;
+  checkPads(gripper);
+  std::vector<Eigen::Vector3f> points = sampleSurface(mesh, parameters.surface_spacing, 1).points;
+  points.insert(points.end(), mesh.vertices.begin(), mesh.vertices.end());
+  surface_ = std::make_shared<const SurfaceBlocks>(points);
 }
 
 // The tip of the grasp is where it is when holding; on the way in, the flange is in the same place and the fingers
 // open.
 void GraspChecker::approach(const GraspDefinition& grasp, const Pose& T_object_tip, GraspCheck& result) const
 {
-  const std::vector<Eigen::Vector3d> points = surfaceIn(T_object_tip);
-  const Pose T_tip_tool0 = gripper_.T_tool0_tip(grasp.width).inverse();
-  const Pose T_tip_start = Eigen::Translation3d(0, 0, -grasp.approach) * T_tip_tool0;
-  Nearest nearest;
-  for (std::size_t b = 0; b < gripper_.bodies.size(); ++b)
+  const Pose T_object_start =
+      T_object_tip * Eigen::Translation3d(0, 0, -grasp.approach) * gripper_.T_tool0_tip(grasp.width).inverse();
+  const Eigen::Vector3d motion = grasp.approach * T_object_tip.linear().col(2);
+  float nearest = std::numeric_limits<float>::infinity();
+  Eigen::Vector3f at = Eigen::Vector3f::Zero();
+  for (const ToolPiece& piece : shapeAt(gripper_, grasp.opening))
   {
-    const ConvexBody start = transformed(gripper_.bodyAt(b, grasp.opening), T_tip_start);
-    const double before = nearest.distance;
-    findNearest(BoxedBody(swept(start, Eigen::Vector3d(0, 0, grasp.approach))), points, nearest);
-    if (nearest.distance < before)
-      result.closest = gripper_.bodies[b].name;
+    const float before = nearest;
+    surface_->deepest(BodySweep(swept(transformed(piece.shape, T_object_start), motion)).planes, nearest, at);
+    if (nearest < before)
+      result.closest = piece.body;
   }
-  result.clearance = nearest.distance;
-  result.closest_at = surface_[nearest.point].cast<double>();
+  result.clearance = static_cast<double>(nearest);
+  result.closest_at = at.cast<double>();
 }
 
 double GraspChecker::closing(const GraspDefinition& grasp, const Pose& T_object_tip, double offset,
                              std::string& body) const
 {
-  Pose T_object_centred = T_object_tip;
-  T_object_centred.translation() += offset * T_object_tip.linear().col(1);
-  const std::vector<Eigen::Vector3d> points = surfaceIn(T_object_centred);
-  const Pose T_tip_tool0 = gripper_.T_tool0_tip(grasp.width).inverse();
-  double deepest = 0;
-  const auto look = [&](std::size_t b, double opening) {
-    Nearest nearest;
-    nearest.distance = -TOUCH;
-    findNearest(BoxedBody(transformed(gripper_.bodyAt(b, opening), T_tip_tool0)), points, nearest);
-    if (nearest.distance >= std::min(deepest, -TOUCH))
+  const Pose T_object_tool0 =
+      T_object_tip * Eigen::Translation3d(0, offset, 0) * gripper_.T_tool0_tip(grasp.width).inverse();
+  float deepest = -TOUCH;
+  Eigen::Vector3f at;
+  const auto look = [&](double last, bool at_pads) {
+    if (last > grasp.opening)
       return;
-    deepest = nearest.distance;
-    body = gripper_.bodies[b].name;
+    for (const ToolPiece& piece : closingShape(gripper_, grasp.opening, last))
+    {
+      if (piece.may_touch_target != at_pads)
+        continue;
+      const float before = deepest;
+      surface_->deepest(BodySweep(transformed(piece.shape, T_object_tool0)).planes, deepest, at);
+      if (deepest < before)
+        body = piece.body;
+    }
   };
-  for (std::size_t b = 0; b < gripper_.bodies.size(); ++b)
-  {
-    // The pads' faces may come near, the others stay where they are when the part is held.
-    const double last = grasp.width + (gripper_.bodies[b].touches_part ? CLOSING_STEP : 0);
-    for (double opening = grasp.opening; opening > last; opening -= CLOSING_STEP)
-      look(b, opening);
-    if (last <= grasp.opening)
-      look(b, last);
-  }
-  return deepest;
+  look(grasp.width + PAD_ROOM, true);
+  look(grasp.width, false);
+  return deepest < -TOUCH ? static_cast<double>(deepest) : 0.0;
 }
 }  // namespace bin_picking

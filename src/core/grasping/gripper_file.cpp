@@ -41,7 +41,7 @@ ConvexBody readBox(const YamlMap& yaml, const std::string& name)
 }
 
 /// The hull of a mesh that is drawn in the tool0 frame.
-ConvexBody readMesh(const YamlMap& yaml, const std::string& gripper_file)
+ConvexBody readMesh(const YamlMap& yaml, const std::string& name, const std::string& gripper_file)
 {
   yaml.allowKeys({"file", "unit"});
   const std::filesystem::path file = std::filesystem::path(gripper_file).parent_path() / yaml.text("file");
@@ -54,10 +54,17 @@ ConvexBody readMesh(const YamlMap& yaml, const std::string& gripper_file)
   {
     yaml.fail("unit", error.what());
   }
-  std::vector<Eigen::Vector3d> points;
-  for (const Eigen::Vector3f& v : loadMesh(file.string(), unit).vertices)
-    points.push_back(v.cast<double>());
-  return makeHull(points);
+  try
+  {
+    std::vector<Eigen::Vector3d> points;
+    for (const Eigen::Vector3f& v : loadMesh(file.string(), unit).vertices)
+      points.push_back(v.cast<double>());
+    return makeHull(points);
+  }
+  catch (const Error& error)
+  {
+    yaml.fail("file", "the mesh of the body '" + name + "' cannot be used: " + error.what());
+  }
 }
 
 GripperBody::Placement readPlacement(const YamlMap& yaml)
@@ -78,7 +85,8 @@ GripperBody readBody(const YamlMap& yaml, const Gripper& gripper, const std::str
   body.name = yaml.text("name");
   if (yaml.has("box") == yaml.has("mesh"))
     yaml.fail("name", "the body '" + body.name + "' must have either a 'box' or a 'mesh'");
-  body.shape = yaml.has("box") ? readBox(yaml.map("box"), body.name) : readMesh(yaml.map("mesh"), gripper_file);
+  body.shape =
+      yaml.has("box") ? readBox(yaml.map("box"), body.name) : readMesh(yaml.map("mesh"), body.name, gripper_file);
   if (yaml.has("moves"))
   {
     body.placements.clear();

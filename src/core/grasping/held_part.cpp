@@ -60,7 +60,7 @@ bool HeldPart::passes(const Eigen::Vector3f& center, float radius, float& from, 
 }
 
 /// How much deeper the point gets into the part than it is at the start: <= 0 not at all. Each step is as long as the
-/// distance from the surface allows.
+/// distance from the surface allows. Ends where it is more than max_drag: farther on it may be deeper.
 float HeldPart::deepening(const Eigen::Vector3f& point) const
 {
   float from = 0;
@@ -72,9 +72,9 @@ float HeldPart::deepening(const Eigen::Vector3f& point) const
   for (float way = from; way <= to;)
   {
     const float distance = field_.at(point + way * way_object_);
+    if (!(distance >= at_rest - max_drag_))  // too deep, or not a number
+      return at_rest - distance;
     nearest = std::min(nearest, distance);
-    if (nearest < at_rest - max_drag_)
-      break;
     way += std::max(distance, MIN_STEP);
   }
   return at_rest - nearest;
@@ -99,8 +99,8 @@ void HeldPart::meet(const SurfaceBlocks& other, const Pose& T_camera_other, int 
     for (std::size_t k = block.begin; k < block.end; ++k)
     {
       const float deeper = deepening(T_object_other * other.point(k));
-      if (deeper - max_drag_ > -worst.margin())
-        worst = {-deeper, -max_drag_, ObstacleKind::Part, index, T_camera * other.point(k)};
+      if (!(deeper - max_drag_ <= -worst.margin()))
+        keepWorse(worst, {-deeper, -max_drag_, ObstacleKind::Part, index, T_camera * other.point(k)});
     }
     if (!worst.free())
       return;

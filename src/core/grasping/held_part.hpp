@@ -22,7 +22,8 @@ public:
   /// The corners of the part's own box at both ends of the way, camera frame.
   const std::vector<Eigen::Vector3f>& corners() const { return corners_; }
 
-  /// Offers a point that rests in the camera frame: by how much it gets deeper into the part than it is now.
+  /// Offers a point that rests in the camera frame: by how much it gets deeper into the part than it is now; no more
+  /// than the first depth beyond max_drag that was met.
   void meet(const Eigen::Vector3f& point_camera, ObstacleKind kind, int index, Encounter& worst) const;
 
   /// The same for all points of another part.

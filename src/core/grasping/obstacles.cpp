@@ -19,11 +19,28 @@ namespace bin_picking
 {
 namespace
 {
-// Distances from the bin beyond this are not asked for, metres.
+// Distances from the bin beyond this are not asked for unless more is required, metres.
 constexpr double BIN_LOOK_AHEAD = 0.02;
 
 // A distance field is cut at its band: what is farther must not count as near.
 constexpr float BAND_SHARE = 0.9f;
+
+/// A comparison with what is not finite is never true: it would find nothing in the way. Also of what does not fit into
+/// single precision, in which clouds and parts are compared.
+template <typename Matrix>
+void requireFinite(const Matrix& values, const std::string& what)
+{
+  if (!values.template cast<float>().allFinite())
+    throw ParameterError(what +
+                         " is not finite, so that nothing could be found in its way; give finite numbers, metres.");
+}
+
+void requireFinite(const Bin& bin)
+{
+  requireFinite(bin.T_camera_bin.matrix(), "The pose of the bin");
+  requireFinite(bin.inner_size, "The inner size of the bin");
+  requireFinite(Eigen::Matrix<double, 1, 1>(bin.wall_thickness), "The wall thickness of the bin");
+}
 
 /// Whether one of the body's faces, or of the other's, keeps them apart by the distance.
 bool farApart(const ConvexBody& a, const ConvexBody& b, double distance)
@@ -89,10 +106,11 @@ struct Obstacles::Impl
 
   void meetBin(const BodySweep& body, Encounter& worst) const
   {
+    const double look_ahead = std::max(BIN_LOOK_AHEAD, parameters.bin_clearance);
     for (std::size_t i = 0; i < sides.size(); ++i)
     {
       const BinSide& side = sides[i];
-      if (farApart(body.shape, side.box, BIN_LOOK_AHEAD))
+      if (farApart(body.shape, side.box, look_ahead))
         continue;
       keepWorse(worst, {static_cast<float>(bin_picking::clearance(body.shape, side.box)),
                         static_cast<float>(parameters.bin_clearance),
@@ -214,13 +232,15 @@ struct Obstacles::Impl
                   std::size_t target, bool target_counts) const
   {
     checkTarget(target);
+    requireFinite(T_camera_tool0.matrix(), "The pose of tool0");
+    requireFinite(motion_camera, "The motion of tool0");
     Encounter worst;
     const ToolPiece* of = nullptr;
     for (const ToolPiece& piece : tool)
     {
       const BodySweep body(swept(transformed(piece.shape, T_camera_tool0), motion_camera));
       const Encounter met = meet(body, target, target_counts && !piece.may_touch_target);
-      if (met.margin() < worst.margin())
+      if (!(met.margin() >= worst.margin()))
       {
         worst = met;
         of = &piece;
@@ -239,12 +259,16 @@ Obstacles::Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<Plac
   auto impl = std::make_unique<Impl>();
   impl->parameters = parameters;
   if (bin)
+  {
+    requireFinite(*bin);
     impl->sides = binSides(*bin);
+  }
   impl->parts = std::vector<Impl::Part>(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i)
   {
     if (!parts[i].model)
       throw ParameterError("A part is given without its model; the collision check needs its surface.");
+    requireFinite(parts[i].T_camera_object.matrix(), "The pose of a part, " + parts[i].model->name + ",");
     impl->surfaces.emplace(parts[i].model, nullptr);
     impl->parts[i].placed = parts[i];
   }
@@ -299,6 +323,7 @@ Clearance Obstacles::closing(const Gripper& gripper, const Pose& T_camera_tool0,
 Clearance Obstacles::pulledOut(const Eigen::Vector3d& motion_camera, std::size_t target) const
 {
   impl_->checkTarget(target);
+  requireFinite(motion_camera, "The motion of the held part");
   return impl_->inWords(impl_->meetHeld(motion_camera, target), HELD_PART);
 }
 
@@ -308,6 +333,6 @@ Clearance Obstacles::retreat(const Gripper& gripper, const ToolMotion& motion, s
   if (!of_gripper.free())
     return of_gripper;
   const Clearance of_part = pulledOut(motion.motion_camera, target);
-  return of_part.margin() < of_gripper.margin() ? of_part : of_gripper;
+  return of_part.margin() >= of_gripper.margin() ? of_gripper : of_part;
 }
 }  // namespace bin_picking

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bin_picking_perception/common/ray_triangle.hpp"
+
 namespace bin_picking
 {
 namespace
@@ -24,20 +26,6 @@ std::vector<Triangle> trianglesOf(const TriangleMesh& mesh)
     triangles.push_back({a, u, v, u.cross(v).normalized()});
   }
   return triangles;
-}
-
-/// Distance along the ray at which it meets the triangle; negative: it does not (Moeller and Trumbore).
-double meets(const Triangle& t, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction)
-{
-  const Eigen::Vector3d p = direction.cross(t.side_2);
-  const double determinant = t.side_1.dot(p);
-  if (std::abs(determinant) < 1e-18)
-    return -1;
-  const Eigen::Vector3d s = origin - t.corner;
-  const double u = s.dot(p) / determinant;
-  const Eigen::Vector3d q = s.cross(t.side_1);
-  const double v = direction.dot(q) / determinant;
-  return u < 0 || v < 0 || u + v > 1 ? -1 : t.side_2.dot(q) / determinant;
 }
 
 bool nearlySame(const OpposedPoints& a, const OpposedPoints& b, double spacing)
@@ -61,11 +49,11 @@ std::vector<OpposedPoints> opposedPoints(const TriangleMesh& mesh, double max_wi
     {
       if (!(triangle.normal.dot(inward) > std::cos(max_angle)))
         continue;
-      const double width = meets(triangle, origin, inward);
-      if (width < OFF_SURFACE || width > max_width)
+      const auto width = crossing(triangle.corner, triangle.side_1, triangle.side_2, origin, inward);
+      if (!width || *width < OFF_SURFACE || *width > max_width)
         continue;
       // Halfway between the two normals, both are inclined by the same.
-      const OpposedPoints pair = {origin + width / 2 * inward, (inward + triangle.normal).normalized(), width};
+      const OpposedPoints pair = {origin + *width / 2 * inward, (inward + triangle.normal).normalized(), *width};
       if (std::none_of(pairs.begin(), pairs.end(),
                        [&](const OpposedPoints& known) { return nearlySame(known, pair, spacing); }))
         pairs.push_back(pair);

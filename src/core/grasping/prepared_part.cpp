@@ -23,13 +23,17 @@ Refusal checkGripper(const GraspDefinition& definition, const Gripper& gripper)
                                               millimetres(definition.opening) + "), the gripper \"" + gripper.name +
                                               "\" is a suction cup."};
   if (!(definition.opening <= gripper.max_opening))
-    return {GraspRejection::OpeningTooSmall, "The grasp asks for an opening of " + millimetres(definition.opening) +
-                                                 ", the gripper \"" + gripper.name + "\" opens to " +
-                                                 millimetres(gripper.max_opening) + "."};
+  {
+    const auto [opening, most] = toldApart(definition.opening, gripper.max_opening, millimetres);
+    return {GraspRejection::OpeningTooSmall, "The grasp asks for an opening of " + opening + ", the gripper \"" +
+                                                 gripper.name + "\" opens to " + most + "."};
+  }
   if (!(definition.width >= gripper.min_opening))
-    return {GraspRejection::ClosingTooSmall, "The part is " + millimetres(definition.width) +
-                                                 " wide there, the gripper \"" + gripper.name + "\" closes to " +
-                                                 millimetres(gripper.min_opening) + "."};
+  {
+    const auto [width, least] = toldApart(definition.width, gripper.min_opening, millimetres);
+    return {GraspRejection::ClosingTooSmall,
+            "The part is " + width + " wide there, the gripper \"" + gripper.name + "\" closes to " + least + "."};
+  }
   return {};
 }
 

@@ -20,16 +20,26 @@ constexpr double MAX_EXTENSION = 2;  // of the picture's size, to either side
 
 int wholeBlocks(int pixels) { return (pixels + BLOCK - 1) / BLOCK * BLOCK; }
 
-/// Where the ray enters the bin through its rim; FAR_AWAY if it does not.
+/// Where the ray enters the inside of the bin, through its rim or behind a wall that hides it; 0 if the camera is in
+/// there, FAR_AWAY if the ray passes by.
 float depthAtRim(const Bin& bin, const Eigen::Vector3d& ray)
 {
   const Pose T_bin_camera = bin.T_camera_bin.inverse();
-  const Eigen::Vector3d direction = T_bin_camera.linear() * ray;
-  const Eigen::Vector3d camera = T_bin_camera.translation();
-  const double z = (bin.inner_size.z() - camera.z()) / direction.z();
-  const Eigen::Vector3d at_rim = camera + z * direction;
-  const bool inside = std::abs(at_rim.x()) <= bin.inner_size.x() / 2 && std::abs(at_rim.y()) <= bin.inner_size.y() / 2;
-  return direction.z() < 0 && z > 0 && inside ? static_cast<float>(z) : FAR_AWAY;
+  const Eigen::Array3d direction = T_bin_camera.linear() * ray;
+  const Eigen::Array3d camera = T_bin_camera.translation();
+  const Eigen::Array3d half = bin.inner_size.array() * Eigen::Array3d(0.5, 0.5, 1);
+  const Eigen::Array3d low = half * Eigen::Array3d(-1, -1, 0);
+  double enters = 0;
+  double leaves = static_cast<double>(FAR_AWAY);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    // A ray along the faces is between them all the time or never: the infinite quotients say so.
+    const double a = (low[axis] - camera[axis]) / direction[axis];
+    const double b = (half[axis] - camera[axis]) / direction[axis];
+    enters = std::max(enters, std::min(a, b));
+    leaves = std::min(leaves, std::max(a, b));
+  }
+  return enters <= leaves ? static_cast<float>(enters) : FAR_AWAY;
 }
 
 std::vector<Eigen::Vector3d> cornersOf(const Bin& bin)
@@ -69,9 +79,9 @@ void SeenSpace::extendTo(const DepthGrid& measured, const Bin* bin)
   const Eigen::Vector2d most = MAX_EXTENSION * picture.sizes();
   const Eigen::AlignedBox2d largest(-most, picture.max() + most);
   if (bin)
-    for (const Eigen::Vector3d& corner : cornersOf(*bin))
-      if (corner.z() > static_cast<double>(MIN_DEPTH))
-        picture.extend(camera.project(corner));
+    for (const Eigen::Vector3d& corner : cornersOf(*bin))  // beside the camera or behind it: the bin may be on any ray
+      picture.extend(corner.z() > static_cast<double>(MIN_DEPTH) ? Eigen::AlignedBox2d(camera.project(corner))
+                                                                 : largest);
   picture = picture.intersection(largest);
   left_ = static_cast<int>(std::ceil(-picture.min().x()));
   top_ = static_cast<int>(std::ceil(-picture.min().y()));

@@ -121,14 +121,18 @@ ConvexBody between(const Gripper& gripper, std::size_t body, double from, double
 
 ToolShape shapeAt(const Gripper& gripper, double opening)
 {
+  // The lip is pressed on the part, and is soft; fingers come down beside it.
+  const bool may_touch = gripper.kind == Gripper::Kind::Suction;
   ToolShape pieces;
   for (const std::size_t i : orderOf(gripper))
-    pieces.push_back({gripper.bodies[i].name, false, gripper.bodyAt(i, opening)});
+    pieces.push_back({gripper.bodies[i].name, may_touch && gripper.bodies[i].touches_part, gripper.bodyAt(i, opening)});
   return pieces;
 }
 
 ToolShape closingShape(const Gripper& gripper, double from, double to)
 {
+  for (const double opening : {from, to})
+    gripper.T_tool0_tip(opening);  // throws for one that the gripper does not have, also where no body moves
   ToolShape pieces;
   for (const std::size_t i : orderOf(gripper))
   {

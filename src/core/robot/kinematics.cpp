@@ -144,7 +144,7 @@ int Kinematics::fitIntoLimits(Joints& joints, const Joints& reference) const
   Joints fitted = joints;
   for (int k = 0; k < 6; ++k)
   {
-    const double nearest = nearestTurn(joints[k], reference[k]);
+    const double nearest = nearestTurn(joints[k], std::clamp(reference[k], robot_.lower[k], robot_.upper[k]));
     const auto within = [&](double angle) { return angle >= robot_.lower[k] && angle <= robot_.upper[k]; };
     fitted[k] = nearest;
     if (!within(nearest))

@@ -2,24 +2,44 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <limits>
-#include <locale>
-#include <sstream>
+#include <optional>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 #include "bin_picking_perception/robot/kinematics.hpp"
 
 namespace bin_picking
 {
 namespace
 {
-std::string metres(double value)
+/// From the shoulder to the wrist, metres.
+struct Span
 {
-  std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream << std::fixed << std::setprecision(3) << value << " m";
-  return stream.str();
+  explicit Span(const Robot& robot)
+      : shortest(std::abs(robot.dh[1].a - robot.dh[2].a)), longest(std::abs(robot.dh[1].a + robot.dh[2].a))
+  {}
+
+  /// By how much a length is outside.
+  double missedBy(double length) const { return std::max(length - longest, shortest - length); }
+
+  double shortest, longest;
+};
+
+Kinematics::Fault lengthFault(double length, const Robot& robot)
+{
+  const Span span(robot);
+  const bool too_far = length - span.longest > span.shortest - length;
+  const auto [figure, limit] = toldApart(length, too_far ? span.longest : span.shortest, metres, 3);
+  return {too_far, "the wrist would be " + figure + " from the shoulder, the " + robot.name +
+                       (too_far ? " reaches " : " cannot fold closer than ") + limit};
+}
+
+Kinematics::Fault axisFault(const Pose& T_base_tool0, const Robot& robot)
+{
+  const Eigen::Vector3d center = T_base_tool0.translation() - robot.dh[5].d * T_base_tool0.linear().col(2);
+  const auto [figure, limit] = toldApart(std::hypot(center.x(), center.y()), robot.dh[3].d, metres, 3);
+  return {false, "the wrist would be " + figure + " from the vertical axis of the base, the " + robot.name +
+                     " cannot come nearer than " + limit};
 }
 }  // namespace
 
@@ -62,29 +82,21 @@ void requireRigid(const Pose& pose, const std::string& what)
                          "1e-6; build it from a rotation and a position only");
 }
 
+Kinematics::Fault Kinematics::fault(int branch, const Pose& T_base_tool0, const Joints& reference) const
+{
+  const auto p = plane((branch & 4) != 0, (branch & 2) != 0, T_base_tool0, reference[5]);
+  return p ? lengthFault(p->length, robot_) : axisFault(T_base_tool0, robot_);
+}
+
 Kinematics::Fault Kinematics::fault(const Pose& T_base_tool0) const
 {
-  const double longest = std::abs(robot_.dh[1].a + robot_.dh[2].a);
-  const double shortest = std::abs(robot_.dh[1].a - robot_.dh[2].a);
-  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+  const Span span(robot_);
+  std::optional<double> nearest;
   for (const bool far_shoulder : {false, true})
     for (const bool negative_wrist : {false, true})
       if (const auto p = plane(far_shoulder, negative_wrist, T_base_tool0, 0))
-      {
-        nearest = std::min(nearest, p->length);
-        farthest = std::max(farthest, p->length);
-      }
-  if (!std::isfinite(nearest))
-  {
-    const Eigen::Vector3d center = T_base_tool0.translation() - robot_.dh[5].d * T_base_tool0.linear().col(2);
-    return {false, "the wrist would be " + metres(std::hypot(center.x(), center.y())) +
-                       " from the vertical axis of the base, the " + robot_.name + " cannot come nearer than " +
-                       metres(robot_.dh[3].d)};
-  }
-  if (nearest > longest)
-    return {true, "the wrist would be " + metres(nearest) + " from the shoulder, the " + robot_.name + " reaches " +
-                      metres(longest)};
-  return {false, "the wrist would be " + metres(farthest) + " from the shoulder, the " + robot_.name +
-                     " cannot fold closer than " + metres(shortest)};
+        if (!nearest || span.missedBy(p->length) < span.missedBy(*nearest))
+          nearest = p->length;
+  return nearest ? lengthFault(*nearest, robot_) : axisFault(T_base_tool0, robot_);
 }
 }  // namespace bin_picking

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
+#include <tuple>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/common/figures.hpp"
@@ -31,10 +31,7 @@ class Follower
 public:
   Follower(const Kinematics& kinematics, const ReachRequest& request, const ReachParameters& parameters)
       : kinematics_(kinematics), waypoints_(request.waypoints_base_tool0), parameters_(parameters)
-  {
-    const auto& dh = kinematics.robot().dh;
-    arm_length_ = std::abs(dh[1].a) + std::abs(dh[2].a);
-  }
+  {}
 
   /// The joints at the waypoints, or what is wrong with them before any line is followed.
   std::optional<Fault> tryWaypoints(int branch) const
@@ -44,7 +41,7 @@ public:
     {
       const auto joints = kinematics_.branch(branch, waypoints_[w], reference);
       if (!joints)
-        return unreachable(waypoints_[w], static_cast<double>(w));
+        return unreachable(kinematics_.fault(branch, waypoints_[w], reference), static_cast<double>(w));
       if (auto fault = tooSingular(kinematics_.singularityMargin(*joints), static_cast<double>(w)))
         return fault;
       reference = *joints;
@@ -52,31 +49,29 @@ public:
     return std::nullopt;
   }
 
-  /// Follows all lines in one branch. \param result gets joints and singularity
+  /// Follows all lines in one branch. \param result gets the joints
   std::optional<Fault> follow(int branch, Reach& result) const
   {
     Joints joints = *kinematics_.branch(branch, waypoints_.front(), kinematics_.robot().home);
     if (const int joint = kinematics_.fitIntoLimits(joints, kinematics_.robot().home); joint >= 0)
       return beyondLimit(joint, joints[joint], 0);
     result.joints = {joints};
-    result.singularity = factor(kinematics_.singularityMargin(joints));
     for (std::size_t w = 1; w < waypoints_.size(); ++w)
     {
-      if (auto fault = followLine(branch, w, joints, result.singularity))
+      if (auto fault = followLine(branch, w, joints))
         return fault;
       result.joints.push_back(joints);
     }
     return std::nullopt;
   }
 
-  Fault unreachable(const Pose& pose, double progress) const
+  static Fault unreachable(const Kinematics::Fault& fault, double progress)
   {
-    const Kinematics::Fault fault = kinematics_.fault(pose);
     return {fault.too_far ? Reach::Failure::OutOfReach : Reach::Failure::NoSolution, fault.sentence, progress};
   }
 
 private:
-  std::optional<Fault> followLine(int branch, std::size_t w, Joints& joints, double& singularity) const
+  std::optional<Fault> followLine(int branch, std::size_t w, Joints& joints) const
   {
     const Pose& from = waypoints_[w - 1];
     const Pose& to = waypoints_[w];
@@ -94,50 +89,54 @@ private:
         if (turn.angle() > 1e-9)
           pose.linear() = from.linear() * Eigen::AngleAxisd(share * turn.angle(), turn.axis()).toRotationMatrix();
       }
-      if (auto fault = step(branch, pose, static_cast<double>(w - 1) + share, joints, singularity))
+      if (auto fault = step(branch, pose, static_cast<double>(w - 1) + share, joints))
         return fault;
     }
     return std::nullopt;
   }
 
-  std::optional<Fault> step(int branch, const Pose& pose, double progress, Joints& joints, double& singularity) const
+  std::optional<Fault> step(int branch, const Pose& pose, double progress, Joints& joints) const
   {
     const auto next = kinematics_.branch(branch, pose, joints);
     if (!next)
-      return unreachable(pose, progress);
-    const SingularityMargin margin = kinematics_.singularityMargin(*next);
-    if (auto fault = tooSingular(margin, progress))
+      return unreachable(kinematics_.fault(branch, pose, joints), progress);
+    if (auto fault = tooSingular(kinematics_.singularityMargin(*next), progress))
       return fault;
     for (int k = 0; k < 6; ++k)
       if ((*next)[k] < kinematics_.robot().lower[k] || (*next)[k] > kinematics_.robot().upper[k])
         return beyondLimit(k, (*next)[k], progress);
     int joint = 0;
     if (const double jump = (*next - joints).cwiseAbs().maxCoeff(&joint); jump > parameters_.max_joint_step)
+    {
+      const FigureAndLimit told = toldApart(jump, parameters_.max_joint_step, degrees);
       return Fault{Reach::Failure::Discontinuous,
-                   jointName(joint) + " would have to turn by " + degrees(jump) +
-                       " between neighbouring poses of the "
-                       "way, at most " +
-                       degrees(parameters_.max_joint_step) + " are allowed (max_joint_step)",
+                   jointName(joint) + " would have to turn by " + told.figure +
+                       " between neighbouring poses of the way, at most " + told.limit +
+                       " are allowed (max_joint_step)",
                    progress};
+    }
     joints = *next;
-    singularity = std::min(singularity, factor(margin));
     return std::nullopt;
   }
 
   std::optional<Fault> tooSingular(const SingularityMargin& margin, double progress) const
   {
-    const auto fault = [&](const std::string& sentence) { return Fault{Reach::Failure::Singular, sentence, progress}; };
+    const auto fault = [&](const std::string& what, const std::string& from, const FigureAndLimit& told,
+                           const char* parameter) {
+      return Fault{Reach::Failure::Singular,
+                   what + " would be " + told.figure + " from " + from + ", at least " + told.limit +
+                       " are required (" + parameter + ")",
+                   progress};
+    };
     if (margin.wrist < parameters_.min_wrist_angle)
-      return fault(jointName(4) + " would be " + degrees(margin.wrist) +
-                   " from the singularity of the wrist, at least " + degrees(parameters_.min_wrist_angle) +
-                   " are required (min_wrist_angle)");
+      return fault(jointName(4), "the singularity of the wrist",
+                   toldApart(margin.wrist, parameters_.min_wrist_angle, degrees), "min_wrist_angle");
     if (margin.elbow < parameters_.min_elbow_angle)
-      return fault("the elbow would be " + degrees(margin.elbow) + " from being stretched or folded, at least " +
-                   degrees(parameters_.min_elbow_angle) + " are required (min_elbow_angle)");
+      return fault("the elbow", "being stretched or folded",
+                   toldApart(margin.elbow, parameters_.min_elbow_angle, degrees), "min_elbow_angle");
     if (margin.shoulder < parameters_.min_shoulder_distance)
-      return fault("the wrist would be " + millimetres(margin.shoulder) +
-                   " from the plane of the shoulder's axes, at least " +
-                   millimetres(parameters_.min_shoulder_distance) + " are required (min_shoulder_distance)");
+      return fault("the wrist", "the plane of the shoulder's axes",
+                   toldApart(margin.shoulder, parameters_.min_shoulder_distance, millimetres), "min_shoulder_distance");
     return std::nullopt;
   }
 
@@ -150,31 +149,29 @@ private:
             progress};
   }
 
-  double factor(const SingularityMargin& margin) const
-  {
-    return std::min({std::sin(margin.wrist), std::sin(margin.elbow), margin.shoulder / arm_length_});
-  }
-
   std::string jointName(int joint) const { return kinematics_.robot().joint_names[static_cast<std::size_t>(joint)]; }
 
   const Kinematics& kinematics_;
   const std::vector<Pose>& waypoints_;
   const ReachParameters& parameters_;
-  double arm_length_ = 0;
 };
 
-/// The branches that take the first waypoint, the one nearest to the home pose first.
+/// The branches that take the first waypoint, the one nearest to the home pose first, as the limits of the joints let
+/// it be; those that do not fit into the limits last.
 std::vector<int> preferredBranches(const Kinematics& kinematics, const Pose& first)
 {
   const Joints& home = kinematics.robot().home;
-  std::vector<std::pair<double, int>> order;
+  std::vector<std::tuple<bool, double, int>> order;
   for (int k = 0; k < Kinematics::NUM_BRANCHES; ++k)
-    if (const auto joints = kinematics.branch(k, first, home))
-      order.emplace_back((*joints - home).squaredNorm(), k);
+    if (auto joints = kinematics.branch(k, first, home))
+    {
+      const bool is_beyond = kinematics.fitIntoLimits(*joints, home) >= 0;
+      order.emplace_back(is_beyond, (*joints - home).squaredNorm(), k);
+    }
   std::sort(order.begin(), order.end());
   std::vector<int> branches;
   for (const auto& entry : order)
-    branches.push_back(entry.second);
+    branches.push_back(std::get<int>(entry));
   return branches;
 }
 
@@ -197,7 +194,6 @@ Reach failed(const Fault& fault, std::size_t num_waypoints)
   Reach result;
   result.failure = fault.kind;
   result.waypoint = static_cast<std::size_t>(std::ceil(fault.progress));
-  result.singularity = std::numeric_limits<double>::quiet_NaN();
   result.reason = where(fault.progress, num_waypoints) + ", " + fault.sentence + ".";
   result.reason[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(result.reason[0])));
   return result;
@@ -206,6 +202,7 @@ Reach failed(const Fault& fault, std::size_t num_waypoints)
 
 Reach reach(const Kinematics& kinematics, const ReachRequest& request, const ReachParameters& parameters)
 {
+  checkRanges(parameters);
   const std::vector<Pose>& waypoints = request.waypoints_base_tool0;
   if (waypoints.empty())
     throw ParameterError("the reach of no waypoint was asked for; give at least one pose of tool0");
@@ -215,7 +212,7 @@ Reach reach(const Kinematics& kinematics, const ReachRequest& request, const Rea
   const Follower follower(kinematics, request, parameters);
   const std::vector<int> branches = preferredBranches(kinematics, waypoints.front());
   if (branches.empty())
-    return failed(follower.unreachable(waypoints.front(), 0), waypoints.size());
+    return failed(Follower::unreachable(kinematics.fault(waypoints.front()), 0), waypoints.size());
   std::optional<Fault> farthest;
   for (const int branch : branches)
   {

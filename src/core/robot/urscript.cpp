@@ -4,11 +4,11 @@
 
 #include <array>
 #include <cmath>
-#include <iomanip>
 #include <locale>
 #include <sstream>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/figures.hpp"
 #include "bin_picking_perception/robot/kinematics.hpp"
 
 namespace bin_picking
@@ -17,18 +17,8 @@ namespace
 {
 constexpr double HALF_TURN_TOLERANCE = 1e-9;
 
-/// Without an exponent, which URScript does not promise to read, and without trailing zeros.
-std::string decimal(double value)
-{
-  std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream << std::fixed << std::setprecision(10) << value;
-  std::string text = stream.str();
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.')
-    text.pop_back();
-  return text == "-0" ? "0" : text;
-}
+/// Without an exponent, which URScript does not promise to read.
+std::string decimal(double value) { return shortText(value, 10); }
 
 void requirePositive(double value, const char* what, const char* unit)
 {
