@@ -22,8 +22,11 @@ struct PreparedPart;
 
 /// From detections to grasps that a robot can take: each grasp of each part, expanded by symmetry and tolerance, is
 /// held against what a person would check, in this order: the detection (matching rate, open turn, avoid list), the
-/// gripper's kind and opening, the tilt, the collisions of gripper and held part on the whole way, the robot's reach.
+/// gripper's kind and opening, the tilt, the collisions of held part and gripper on the whole way, the robot's reach.
 /// What remains is ranked. Immutable; thread-safe.
+///
+/// The whole way goes from pre-grasp to grasp to retreat. What of it lies within the bin is continued: straight down
+/// from over the rim to the pre-grasp, and straight up until the part is out.
 ///
 /// What is written comes first: copies turned or tilted by a tolerance are tried for detections that have no other
 /// grasp, in their order, as long as the answer has room (max_grasps), and up to a few for each.

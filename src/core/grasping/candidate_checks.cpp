@@ -3,6 +3,7 @@
 #include "candidate_checks.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "bin_picking_perception/common/figures.hpp"
 #include "bin_picking_perception/robot/reach.hpp"
@@ -83,6 +84,20 @@ bool passes(Grasp& grasp, const Clearance& closest, const char* phase)
   return reject(grasp, rejectionFor(closest), std::string(phase) + " " + passage(closest));
 }
 
+/// To a way that begins within the bin the gripper has to come, straight down from over the rim: what it covers then is
+/// what it would cover on the way up.
+bool comesDown(Grasp& grasp, const ToolShape& open, const GraspSurroundings& s)
+{
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const ToolPiece& piece : open)
+    for (const Eigen::Vector3d& corner : piece.shape.vertices)
+      lowest = std::min(lowest, (grasp.tool0.pre_grasp * corner).dot(s.up_camera));
+  if (lowest >= s.rim)
+    return true;
+  const ToolMotion up{grasp.tool0.pre_grasp, (s.rim - lowest) * s.up_camera, grasp.opening};
+  return passes(grasp, s.obstacles->approach(open, up, grasp.detection_index), "On the way down to the pre-grasp");
+}
+
 GraspRejection rejectionFor(Reach::Failure failure)
 {
   switch (failure)
@@ -135,16 +150,18 @@ Refusal steepness(double tilt, const GraspSurroundings& s)
 }
 
 bool checkGripper(Grasp& grasp, const PreparedGrasp& prepared, const Eigen::Vector3d& out_camera,
-                  const Obstacles& obstacles)
+                  const GraspSurroundings& s)
 {
   grasp.collision_checked = true;
+  const Obstacles& obstacles = *s.obstacles;
   const std::size_t target = grasp.detection_index;
   const Eigen::Vector3d at_grasp = grasp.tool0.grasp.translation();
   const ToolMotion in{grasp.tool0.pre_grasp, at_grasp - grasp.tool0.pre_grasp.translation(), grasp.opening};
   const ToolMotion out{grasp.tool0.grasp, out_camera, grasp.width};
   return passes(grasp, obstacles.approach(prepared.open, in, target), "On the way in") &&
          passes(grasp, obstacles.closing(prepared.closing, grasp.tool0.grasp, target), "While closing") &&
-         passes(grasp, obstacles.leaving(prepared.closed, out, target), "On the way out");
+         passes(grasp, obstacles.leaving(prepared.closed, out, target), "On the way out") &&
+         comesDown(grasp, prepared.open, s);
 }
 
 bool checkHeldPart(Grasp& grasp, const Clearance& on_the_way_out)

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "bin_picking_perception/grasping/grasp_planner.hpp"
@@ -17,7 +18,9 @@ struct GraspSurroundings
   const GraspPlanner::Request& request;
   const Obstacles* obstacles = nullptr;    ///< nullptr: not checked
   const Kinematics* kinematics = nullptr;  ///< nullptr: not checked
-  Eigen::Vector3d up_camera;               ///< out of the bin; without a bin towards the camera
+  /// Out of the bin; without a bin towards the camera.
+  Eigen::Vector3d up_camera = -Eigen::Vector3d::UnitZ();
+  double rim = -std::numeric_limits<double>::infinity();  ///< of the bin, along up_camera, metres
 };
 
 /// How a part comes out of its surroundings, by the way it is lifted, which is the same for most of its grasps.
@@ -48,10 +51,11 @@ Refusal steepness(double tilt, const GraspSurroundings& s);
 
 // Each returns whether the grasp passed; if not, the rejection and its reason are filled in.
 
-/// The gripper on the whole way: open in, closing, out. Fills in the closest passage.
+/// The gripper on the whole way: open in, closing, out, and straight down from over the bin's rim to where the way
+/// begins. Fills in the closest passage.
 /// \param out_camera how the grasp is lifted, metres
 bool checkGripper(Grasp& grasp, const PreparedGrasp& prepared, const Eigen::Vector3d& out_camera,
-                  const Obstacles& obstacles);
+                  const GraspSurroundings& s);
 /// The part in the hand.
 bool checkHeldPart(Grasp& grasp, const Clearance& on_the_way_out);
 /// One configuration of the arm through the whole way. Fills in its joints. Needs the kinematics.

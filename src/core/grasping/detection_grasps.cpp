@@ -17,6 +17,12 @@ constexpr std::size_t ENOUGH_TURNED = 4;
 // Approaches steeper than allowed by this much are told by their direction alone; the rest is looked at exactly.
 constexpr double ROUNDING = 1e-9;  // of the cosine
 
+/// Along a direction, metres; no more than is so.
+double lowestOf(const TrainedModel& model, const Pose& T_camera_object, const Eigen::Vector3d& up_camera)
+{
+  return (T_camera_object * model.center).dot(up_camera) - model.diameter / 2;
+}
+
 GraspWay moved(const GraspWay& way, const Pose& T_tip_other)
 {
   return {way.pre_grasp * T_tip_other, way.grasp * T_tip_other, way.retreat * T_tip_other};
@@ -31,6 +37,7 @@ DetectionGrasps::DetectionGrasps(std::size_t index, const PartDefinition& defini
       definition_(definition),
       part_(part),
       up_object_(detection_.T_camera_object.linear().transpose() * s.up_camera),
+      over_rim_(s.rim - lowestOf(*s.scene.models[detection_.model_index], detection_.T_camera_object, s.up_camera)),
       listed_(part.grasps.size()),
       refusal_(checkDetection(index, s))
 {
@@ -145,7 +152,7 @@ bool DetectionGrasps::passes(Grasp& grasp, std::size_t g)
 
 bool DetectionGrasps::isFree(Grasp& grasp, std::size_t g) const
 {
-  return !s_.obstacles || checkGripper(grasp, part_.grasps[g], outOf(grasp, g), *s_.obstacles);
+  return !s_.obstacles || checkGripper(grasp, part_.grasps[g], outOf(grasp, g), s_);
 }
 bool DetectionGrasps::comesOut(Grasp& grasp, std::size_t g)
 {
@@ -153,10 +160,11 @@ bool DetectionGrasps::comesOut(Grasp& grasp, std::size_t g)
 }
 bool DetectionGrasps::isReached(Grasp& grasp) const { return !s_.kinematics || checkReach(grasp, s_); }
 
-/// Metres. By the definition, so that it is the same for all grasps: a difference of poses would be so to rounding.
+/// Metres: as far as the robot retreats, and on to over the rim. By the definition, so that it is the same for all
+/// grasps: a difference of poses would be so to rounding.
 Eigen::Vector3d DetectionGrasps::outOf(const Grasp& grasp, std::size_t g) const
 {
-  return definition_.grasps[g].retreat * awayFrom(grasp.tip.grasp);
+  return std::max(definition_.grasps[g].retreat, over_rim_) * awayFrom(grasp.tip.grasp);
 }
 
 Eigen::Vector3d DetectionGrasps::awayFrom(const Pose& T_camera_grasp) const

@@ -60,6 +60,7 @@ private:
   const PartDefinition& definition_;
   const PreparedPart& part_;
   Eigen::Vector3d up_object_;
+  double over_rim_;  ///< how far the part has to be lifted to be out of the bin, metres; < 0 without a bin
   std::vector<std::bitset<32>> listed_;  ///< per grasp, by rejection
   std::optional<WayOut> way_out_;
   Refusal refusal_;  ///< of all grasps

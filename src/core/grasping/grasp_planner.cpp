@@ -130,16 +130,17 @@ GraspSelection GraspPlanner::plan(const Scene& scene, const Request& request) co
   const bool with_reach = kinematics_ && request.check_reach;
   if (with_reach && !scene.T_base_camera)
     throw ParameterError("the reach of the robot is to be checked, but the camera's pose in its base is not given");
+  if (scene.detection.detections.empty())
+    return {};
   std::optional<Obstacles> obstacles;
   if (request.check_collision)
     obstacles.emplace(cloudOf(scene), scene.bin, placedParts(scene), setup_.parameters.obstacles, executor_);
-  const GraspSurroundings s{setup_,
-                            scene,
-                            request,
-                            obstacles ? &*obstacles : nullptr,
-                            with_reach ? &*kinematics_ : nullptr,
-                            scene.bin ? Eigen::Vector3d(scene.bin->T_camera_bin.linear().col(2))
-                                      : Eigen::Vector3d(-Eigen::Vector3d::UnitZ())};
+  GraspSurroundings s{setup_, scene, request, obstacles ? &*obstacles : nullptr, with_reach ? &*kinematics_ : nullptr};
+  if (scene.bin)
+  {
+    s.up_camera = scene.bin->T_camera_bin.linear().col(2);
+    s.rim = (scene.bin->T_camera_bin.translation() + scene.bin->inner_size.z() * s.up_camera).dot(s.up_camera);
+  }
 
   std::vector<DetectionGrasps> grasps = findable(*prepared_, s);
   executor_.forEach(grasps.size(), [&](std::size_t i) { grasps[i].tryAsWritten(); });
