@@ -15,6 +15,13 @@ TEST(Figures, haveAFixedFormOrAShortOne)
 {
   EXPECT_EQ(roundedText(12.345, 1), "12.3");
   EXPECT_EQ(roundedText(2, 3), "2.000");
+  EXPECT_EQ(roundedText(0.05, 2), "0.05");
+  EXPECT_EQ(roundedText(-0.004, 1), "-0.0");
+  EXPECT_EQ(roundedText(9.996, 2), "10.00");
+  EXPECT_EQ(roundedText(-1234567.891, 0), "-1234568");
+  EXPECT_EQ(roundedText(1e20, 1), "100000000000000000000.0");
+  EXPECT_EQ(roundedText(std::numeric_limits<double>::quiet_NaN(), 1), "nan");
+  EXPECT_EQ(roundedText(-std::numeric_limits<double>::infinity(), 1), "-inf");
   EXPECT_EQ(metres(0.8172), "0.817 m");
   EXPECT_EQ(millimetres(0.0123), "12.3 mm");
   EXPECT_EQ(degrees(M_PI / 4), "45.0 deg");

@@ -21,10 +21,22 @@ std::string withPoint(char* text, int length)
 
 std::string roundedText(double value, int digits)
 {
-  // With the digits written into the format, which the library reads faster than a star.
-  const std::array<char, 5> format = {'%', '.', static_cast<char>('0' + std::clamp(digits, 0, 9)), 'f', '\0'};
-  std::array<char, 330> text;  // the longest finite number has 309 digits before the point
-  return withPoint(text.data(), std::snprintf(text.data(), text.size(), format.data(), value));
+  constexpr double EXACT = 1e15;  // whole numbers below it are told apart by one
+  const int places = std::clamp(digits, 0, 9);
+  const double scaled = std::abs(value) * std::pow(10.0, places);
+  if (!(scaled < EXACT))
+  {
+    std::array<char, 330> text;  // the longest finite number has 309 digits before the point
+    return withPoint(text.data(), std::snprintf(text.data(), text.size(), "%.*f", places, value));
+  }
+  // As a whole number of the last place, which takes a tenth of the time.
+  std::string text = std::to_string(static_cast<long long>(std::nearbyint(scaled)));
+  const auto width = static_cast<std::size_t>(places);
+  if (text.size() <= width)
+    text.insert(0, width + 1 - text.size(), '0');
+  if (places > 0)
+    text.insert(text.size() - width, 1, '.');
+  return std::signbit(value) ? "-" + text : text;
 }
 
 std::string shortText(double value, int digits)
@@ -49,8 +61,12 @@ FigureAndLimit toldApart(double figure, double limit, std::string (*text)(double
   constexpr int MOST_DIGITS = 9;
   figure = std::abs(figure);
   limit = std::abs(limit);
-  while (figure != limit && digits < MOST_DIGITS && text(figure, digits) == text(limit, digits))
+  FigureAndLimit told{text(figure, digits), text(limit, digits)};
+  while (figure != limit && digits < MOST_DIGITS && told.figure == told.limit)
+  {
     ++digits;
-  return {text(figure, digits), text(limit, digits)};
+    told = {text(figure, digits), text(limit, digits)};
+  }
+  return told;
 }
 }  // namespace bin_picking
