@@ -57,11 +57,8 @@ json toJson(const Emptying& bin)
 
 std::string toJson(const Study& study)
 {
-  json result = {{"command", study.command},
-                 {"sensor", study.sensor},
-                 {"gripper", study.gripper},
-                 {"truth", study.truth},
-                 {"parts", json::array()}};
+  json result = {{"command", study.command}, {"version", study.version}, {"sensor", study.sensor},
+                 {"gripper", study.gripper}, {"truth", study.truth},     {"parts", json::array()}};
   for (const PartStudy& part : study.parts)
   {
     json bins = json::array();

@@ -45,6 +45,7 @@ Syntax syntax()
            {"--threads", "N", Values::One, "0: all processors (default)"},
            {"--models", "DIR", Values::One, "trained models are kept there (default picking_models)"},
            {"--json", "FILE", Values::One, "every attempt"},
+           {"--version", "TEXT", Values::One, "noted in the report: $(git describe --always --dirty)"},
            {"--set", "KEY=VALUE", Values::Assignments,
             "parameters of the grasps: max_tilt, obstacles/part_clearance, ..."}},
           "config/parts/three_way_tube --gripper config/grippers/ag95.yaml --seeds 1..4"};
@@ -163,6 +164,7 @@ void run(const Arguments& arguments, std::vector<std::string> command)
     parts.push_back(loadPart(folder));
   Study study;
   study.command = std::move(command);
+  study.version = arguments.value("--version", "");
   study.sensor = arguments.value("--sensor", "structured_light");
   study.gripper = bench.gripper.name;
   study.truth = bench.settings.truth;

@@ -19,6 +19,7 @@ struct PartStudy
 struct Study
 {
   std::vector<std::string> command;
+  std::string version;  ///< of the sources, as the caller says; may be empty
   std::string sensor;
   std::string gripper;
   bool truth = false;

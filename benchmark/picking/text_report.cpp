@@ -145,8 +145,9 @@ std::string toText(const Study& study)
   out << "# Picking in the virtual cell\n\nCommand:";
   for (const std::string& word : study.command)
     out << " " << word;
-  out << "\n\nSensor " << study.sensor << ", gripper " << study.gripper << ", poses "
-      << (study.truth ? "true" : "detected") << ".\n\n";
+  out << "\n\n"
+      << (study.version.empty() ? "" : "Version " + study.version + ". ") << "Sensor " << study.sensor << ", gripper "
+      << study.gripper << ", poses " << (study.truth ? "true" : "detected") << ".\n\n";
   writeTable(out, study);
   for (const PartStudy& part : study.parts)
     writeDetails(out, part);
