@@ -9,8 +9,7 @@ namespace bin_picking
 {
 namespace
 {
-constexpr float MIN_STEP = 0.0005f;        // metres: where a point is about to touch
-constexpr float BETWEEN_POINTS = 0.0015f;  // metres: the surface's points lie closer than that
+constexpr float MIN_STEP = 0.0005f;  // metres: where a point is about to touch
 
 Eigen::Vector3f wayOfOthers(const Eigen::Vector3d& motion)
 {
@@ -18,7 +17,7 @@ Eigen::Vector3f wayOfOthers(const Eigen::Vector3d& motion)
 }
 }  // namespace
 
-HeldPart::HeldPart(const DistanceField& field, const SurfaceBlocks& surface, const Pose& T_camera_object,
+HeldPart::HeldPart(const DistanceField& field, const SurfaceBlocks& surface, float spacing, const Pose& T_camera_object,
                    const Eigen::Vector3d& motion_camera, float max_drag)
     : field_(field),
       surface_(surface),
@@ -29,7 +28,7 @@ HeldPart::HeldPart(const DistanceField& field, const SurfaceBlocks& surface, con
       max_drag_(max_drag),
       motion_camera_(motion_camera),
       corners_(cornersOf(surface.box(), Eigen::Isometry3f(T_camera_object.cast<float>()))),
-      tops_(surface, way_object_, LOOK_AHEAD + BETWEEN_POINTS)
+      tops_(surface, way_object_, LOOK_AHEAD + spacing)
 {
   for (std::size_t k = 0; k < 8; ++k)
     corners_.emplace_back(corners_[k] + motion_camera.cast<float>());

@@ -13,8 +13,8 @@ namespace bin_picking
 class HeldPart
 {
 public:
-  /// \param motion_camera of the part, metres
-  HeldPart(const DistanceField& field, const SurfaceBlocks& surface, const Pose& T_camera_object,
+  /// \param spacing of the surface's points, metres \param motion_camera of the part, metres
+  HeldPart(const DistanceField& field, const SurfaceBlocks& surface, float spacing, const Pose& T_camera_object,
            const Eigen::Vector3d& motion_camera, float max_drag);
 
   /// What the part covers on the way lies in here, camera frame.

@@ -170,8 +170,9 @@ struct Obstacles::Impl
   Encounter meetHeld(const Eigen::Vector3d& motion_camera, std::size_t target) const
   {
     const Part& held = parts[target];
-    const HeldPart way(held.placed.model->field, *held.surface, held.placed.T_camera_object, motion_camera,
-                       static_cast<float>(parameters.max_drag));
+    const TrainedModel& model = *held.placed.model;
+    const HeldPart way(model.field, *held.surface, static_cast<float>(model.parameters.surface_spacing),
+                       held.placed.T_camera_object, motion_camera, static_cast<float>(parameters.max_drag));
     Encounter worst;
     for (std::size_t i = 0; i < sides.size(); ++i)
       way.meetSide(sides[i].box, sides[i].floor ? ObstacleKind::BinFloor : ObstacleKind::BinWall, static_cast<int>(i),
