@@ -137,8 +137,14 @@ def read(files):
 
 
 def commands(files, package):
-    """The commands that wrote the files, with paths as seen from the package."""
-    return [" ".join(str(word).replace(f"{package}/", "") for word in load(file)["command"]) for file in files]
+    """The commands that wrote the files, with paths as seen from the package, without the place of their models."""
+    return [" ".join(str(word).replace(f"{package}/", "") for word in without(load(file)["command"], "--models"))
+            for file in files]
+
+
+def without(command, option):
+    """The command without an option and its value."""
+    return [word for word, before in zip(command, [None, *command]) if option not in (word, before)]
 
 
 def cells_of(row):

@@ -135,7 +135,8 @@ class Picking(unittest.TestCase):
 
     def test_picks_failures_by_cause_shakes_and_collisions_called_free_are_counted(self):
         table = self.table(self.file(picking_report([emptied(1, [TAKEN, HIT, TAKEN], shakes=2),
-                                                     emptied(2, [MISSED, HIT, TAKEN], shakes=3, left=4)])))
+                                                     emptied(2, [MISSED, HIT, TAKEN], shakes=3, left=4)],
+                                                    options=["--models", "/some/where"])))
         paper, ours = (dict(zip(table.columns, row)) for row in table.rows)
         self.assertEqual((paper["picks"], paper["successes"]), ("100", "95"))
         self.assertEqual((ours["bins"], ours["picks"], ours["successes"], ours["failures"]), ("2", "6", "3", "3"))
@@ -143,6 +144,7 @@ class Picking(unittest.TestCase):
         self.assertEqual(ours["failures by cause"], "2 x approach: gripper against part; 1 x missed")
         self.assertEqual((ours["collisions called free"], ours["shakes"], ours["parts left"]), ("2", "5", "4"))
         self.assertTrue(any(note.startswith("`benchmark_picking config/parts/three_way_tube") for note in table.notes))
+        self.assertNotIn("/some/where", " ".join(table.notes))
 
     def test_files_of_other_seeds_are_one_row_and_other_parts_or_settings_are_not(self):
         files = [self.file(picking_report([emptied(1, [TAKEN])], seeds="1"), "a.json"),
