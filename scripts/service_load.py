@@ -71,7 +71,7 @@ def faults_of(answer):
 
 
 class Load:
-    def __init__(self, detector, num_calls):
+    def __init__(self, detector, num_calls, process):
         self._name = detector + "/get_best_grasp"
         self._report = rospy.ServiceProxy(detector + "/report_pick", ReportPick)
         self._left = num_calls
@@ -79,6 +79,8 @@ class Load:
         self.faults = collections.Counter()
         self.codes = collections.Counter()
         self.seconds = []
+        self._process = process
+        self.memory = []  # MiB, after each answer
         self._names = set()
 
     def run(self, num_clients):
@@ -118,6 +120,7 @@ class Load:
             self._names.update(names)
             self.codes[answer.code.name] += 1
             self.seconds.append(seconds)
+            self.memory.append(resident_mib(self._process))
             self.faults.update(faults)
         if names:  # picked: clears, so that the next answers have grasps too
             report = self._report(ReportPickRequest(grasp_uid=names[0], outcome=ReportPickRequest.PICKED))
@@ -151,12 +154,13 @@ def main():
     wait_until_ready(arguments.detector)
     process = process_of(arguments.process or arguments.detector)
     num_first = max(20, arguments.calls // 10)
-    first = Load(arguments.detector, num_first)
+    first = Load(arguments.detector, num_first, process)
     first.run(arguments.clients)
-    before = resident_mib(process)
-    load = Load(arguments.detector, arguments.calls - num_first)
+    load = Load(arguments.detector, arguments.calls - num_first, process)
     load.run(arguments.clients)
-    growth = resident_mib(process) - before
+    # Each cloud on its way takes tens of MiB for a moment: of many looks the middle one.
+    before = float(np.median(first.memory or [0]))
+    growth = float(np.median(load.memory[-num_first:] or [0])) - before
 
     faults = first.faults + load.faults
     if growth > arguments.max_growth:
