@@ -9,8 +9,8 @@ Usage: service_load.py [--calls 1000] [--clients 2] [--detector NAME] [--max-gro
 Half of the calls wait for a new cloud, half take the latest one. Checked are: every call is answered, at least one with
 grasps; each answer is of one cloud (the same stamp and frame in header, detections and grasps; the part in the hand is the
 part where it was found); grasps have names that none had before; stage times are complete; the memory of the process
-(VmRSS) grows by less than --max-growth after the first tenth of the calls (at least 20), in which caches, threads and pools
-come into being.
+(VmRSS) grows by less than --max-growth from the first to the last tenth of the calls (at least 20, medians): in the first,
+caches, threads and pools come into being.
 Exit code 0: all of this holds; 1: not, with a line for each fault.
 """
 import argparse

@@ -45,6 +45,7 @@ TEST(Figures, aFigureAndItsLimitReadDifferently)
   EXPECT_EQ(told(-0.00001, 0), "0.01 mm, 0.00 mm") << "signs are left to the sentence";
   EXPECT_EQ(told(-0.002, -0.001), "2.0 mm, 1.0 mm");
   EXPECT_EQ(told(0.003, 0.003), "3.0 mm, 3.0 mm") << "there is no difference to tell";
+  EXPECT_EQ(told(-0.0010000002, 0.001), "1.0 mm, 1.0 mm") << "one is within, the other outside";
   EXPECT_EQ(told(std::numeric_limits<double>::quiet_NaN(), 0.003), "nan mm, 3.0 mm");
   EXPECT_EQ(toldApart(0.8496, 0.85, percent, 0).figure, "84.96 %");
 }

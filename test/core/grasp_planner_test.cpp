@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "bin_picking_perception/common/error.hpp"
@@ -609,6 +610,62 @@ TEST(GraspPlanner, ALowerPartUnderAnotherIsNotPulledOut)
   EXPECT_EQ(lower->rejection, GraspRejection::HeldPartCollision) << lower->reason;
   // How much deeper than is allowed is not looked for.
   EXPECT_NE(lower->reason.find("more than 0.5 mm deeper into the part 1"), std::string::npos) << lower->reason;
+}
+
+/// Of the first detection.
+std::vector<Grasp> ofTheFirst(const std::vector<Grasp>& grasps)
+{
+  std::vector<Grasp> of_first;
+  std::copy_if(grasps.begin(), grasps.end(), std::back_inserter(of_first),
+               [](const Grasp& grasp) { return grasp.detection_index == 0; });
+  return of_first;
+}
+
+TEST(GraspPlanner, APreGraspWithinTheBinIsComeToFromAbove)
+{
+  GraspDefinition definition = graspFromAbove("top");
+  definition.approach = 0.02;  // from there on, the tops of the fingers stay 35 mm below the rim
+  Gripper fingers = twoFingerGripper();
+  fingers.bodies.erase(fingers.bodies.begin());
+  const Bin bin = binBelowCamera();
+  // Between the fingers and the rim lies a neighbour: over a finger's edge, or 5 mm beside it.
+  const auto planBelow = [&](double y) {
+    return planWith({detectionAt({0, 0, 0.025}), detectionAt({0, y, 0.13})}, {partWith({definition})}, fingers, &bin,
+                    {});
+  };
+  const GraspSelection below = planBelow(0.044);
+  EXPECT_TRUE(ofTheFirst(below.grasps).empty());
+  const std::vector<Grasp> rejected = ofTheFirst(below.rejected);
+  ASSERT_EQ(rejected.size(), 1u);
+  EXPECT_EQ(rejected[0].rejection, GraspRejection::PartCollision) << rejected[0].reason;
+  EXPECT_NE(rejected[0].reason.find("On the way down to the pre-grasp the finger - would reach 1.0 mm into"),
+            std::string::npos)
+      << rejected[0].reason;
+
+  EXPECT_EQ(ofTheFirst(planBelow(0.050).grasps).size(), 1u);
+}
+
+TEST(GraspPlanner, ARetreatWithinTheBinGoesOnUntilThePartIsOut)
+{
+  GraspDefinition definition = graspFromAbove("top");
+  definition.retreat = 0.03;  // ends 50 mm below what lies over it
+  const std::vector<Grasp> rejected = ofTheFirst(
+      selectInBin({detectionAt({0, 0, 0.025}), detectionAt({0, 0, 0.125})}, partWith({definition})).rejected);
+  ASSERT_EQ(rejected.size(), 1u);
+  EXPECT_EQ(rejected[0].rejection, GraspRejection::HeldPartCollision) << rejected[0].reason;
+}
+
+TEST(GraspPlanner, OfTheCopiesThatAreTooSteepTheLeastSteepIsListed)
+{
+  PartDefinition part = partWith({graspFromAbove("side")});
+  part.grasps[0].T_object_tip = AngleAxisd(100 * DEGREE, Vector3d::UnitX()) * part.grasps[0].T_object_tip;
+  part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, Vector3d::UnitX()));  // comes at 80 degrees
+  const GraspSelection selection = selectInBin({detectionAt({0, 0, 0.06})}, part);
+  EXPECT_TRUE(selection.grasps.empty());
+  ASSERT_EQ(selection.rejected.size(), 1u);
+  EXPECT_EQ(selection.rejected[0].rejection, GraspRejection::TiltTooLarge);
+  EXPECT_NEAR(selection.rejected[0].tilt, 80 * DEGREE, 1e-9);
+  EXPECT_EQ(selection.rejected[0].symmetry_variant, 1);
 }
 
 TEST(GraspPlanner, AnAvoidedPlaceIsSkippedWithItsReason)

@@ -34,6 +34,6 @@ struct FigureAndLimit
 };
 
 /// With as many digits, `digits` or more, as it takes for the two to differ: not "3.0 mm, at least 3.0 mm". Signs are
-/// left out. \param text one of those above
+/// left to the sentence, which tells the two apart where they differ. \param text one of those above
 FigureAndLimit toldApart(double figure, double limit, std::string (*text)(double, int), int digits = 1);
 }  // namespace bin_picking

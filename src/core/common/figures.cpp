@@ -59,10 +59,11 @@ std::string percent(double share, int digits) { return roundedText(100 * share, 
 FigureAndLimit toldApart(double figure, double limit, std::string (*text)(double, int), int digits)
 {
   constexpr int MOST_DIGITS = 9;
+  const bool on_either_side = figure * limit < 0;  // the sentence says so: "into" one, "at least" the other
   figure = std::abs(figure);
   limit = std::abs(limit);
   FigureAndLimit told{text(figure, digits), text(limit, digits)};
-  while (figure != limit && digits < MOST_DIGITS && told.figure == told.limit)
+  while (!on_either_side && figure != limit && digits < MOST_DIGITS && told.figure == told.limit)
   {
     ++digits;
     told = {text(figure, digits), text(limit, digits)};

@@ -14,6 +14,8 @@ namespace bin_picking
 {
 namespace
 {
+static_assert(BLOCK == 8, "OwnPixels has a bit for each pixel of a row of a block");
+
 constexpr float FAR_AWAY = 1e4f;     // metres: free all along the ray; finite, so that products stay numbers
 constexpr float MIN_DEPTH = 0.05f;   // metres: what is nearer to the camera has no place in the picture
 constexpr double MAX_EXTENSION = 2;  // of the picture's size, to either side
