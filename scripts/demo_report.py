@@ -59,6 +59,9 @@ def clearance_text(grasp):
         return "its way not checked"
     if numpy.isinf(grasp.clearance):
         return "nothing near its way"
+    if grasp.required_clearance < 0:  # so deep it may go: the held part into what it rests on
+        return (f"{1000 * max(0.0, -grasp.clearance):.1f} mm deep ({-1000 * grasp.required_clearance:.1f} mm allowed):"
+                f" {grasp.clearance_to}")
     return (f"{1000 * grasp.clearance:.1f} mm clear ({1000 * grasp.required_clearance:.1f} mm required):"
             f" {grasp.clearance_to}")
 

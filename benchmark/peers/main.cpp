@@ -36,7 +36,7 @@ struct Extent
 
 Syntax syntax()
 {
-  return {"benchmark_peers",
+  return {"",
           "Runs OpenCV's and PCL's point-pair matching beside ours on the same scans and prints one report.",
           {"PART_DIR..."},
           {{"--bins", "DATASET", Values::One, "also search for them in whole bins of this data set"},
@@ -47,7 +47,8 @@ Syntax syntax()
            {"--no-growth", "", Values::None, "leave away the growth with the sizes of model and scene"},
            {"--quick", "", Values::None, "one view, coarse sampling, small sizes: about a minute; no figures to quote"},
            {"-o", "DIR", Values::One, "scans, report.md and report.json (default peers_report)"}},
-          "config/parts/*/ --bins bins"};
+          "config/parts/*/ --bins bins",
+          "benchmark_peers"};
 }
 
 std::vector<std::size_t> selectedPrograms(const Arguments& arguments)

@@ -28,7 +28,7 @@ const Pose T_BASE_LINK_CAMERA = Eigen::Translation3d(0.5, 0.1116, 0.8922) *
 
 Syntax syntax()
 {
-  return {"benchmark_picking",
+  return {"",
           "Fills virtual bins and empties them grasp by grasp; reports successes and the causes of failures.",
           {"PART_DIR..."},
           {{"--gripper", "FILE.yaml", Values::One, "the mounted gripper", true},
@@ -48,7 +48,8 @@ Syntax syntax()
            {"--version", "TEXT", Values::One, "noted in the report: $(git describe --always --dirty)"},
            {"--set", "KEY=VALUE", Values::Assignments,
             "parameters of the grasps: max_tilt, obstacles/part_clearance, ..."}},
-          "config/parts/three_way_tube --gripper config/grippers/ag95.yaml --seeds 1..4"};
+          "config/parts/three_way_tube --gripper config/grippers/ag95.yaml --seeds 1..4",
+          "benchmark_picking"};
 }
 
 struct Range

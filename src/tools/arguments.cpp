@@ -12,6 +12,14 @@ namespace bin_picking::tools
 {
 namespace
 {
+/// What is called: "bin_picking train", or a program that stands alone.
+std::string callOf(const Syntax& syntax)
+{
+  return syntax.command.empty() ? syntax.program : syntax.program + " " + syntax.command;
+}
+
+std::string exampleOf(const Syntax& syntax) { return syntax.program + " " + syntax.example; }
+
 constexpr std::size_t HELP_COLUMN = 26;
 
 bool isOption(const std::string& word) { return word.size() > 1 && word[0] == '-'; }
@@ -26,9 +34,9 @@ const Option& findOption(const Syntax& syntax, const std::string& name)
     known.push_back(option.name);
   }
   const std::string guess = didYouMean(name, known);
-  throw UsageError("unknown option '" + name + "'" +
-                   (guess.empty() ? "; 'bin_picking " + syntax.command + " --help' lists the options"
-                                  : "; did you mean '" + guess + "'?"));
+  throw UsageError(
+      "unknown option '" + name + "'" +
+      (guess.empty() ? "; '" + callOf(syntax) + " --help' lists the options" : "; did you mean '" + guess + "'?"));
 }
 
 bool belongsTo(const Option& option, const std::string& word)
@@ -65,14 +73,13 @@ Arguments::Arguments(const Syntax& syntax, const std::vector<std::string>& words
       positionals_.push_back(words[next++]);
   }
   if (positionals_.size() > syntax.positionals.size() && !takesMore(syntax))
-    throw UsageError("superfluous argument " + quoted(positionals_[syntax.positionals.size()]) + "; 'bin_picking " +
-                     syntax.command + " --help' shows what is understood");
+    throw UsageError("superfluous argument " + quoted(positionals_[syntax.positionals.size()]) + "; '" +
+                     callOf(syntax) + " --help' shows what is understood");
   if (positionals_.size() < syntax.positionals.size())
-    throw UsageError(syntax.positionals[positionals_.size()] + " is missing; for example: bin_picking " +
-                     syntax.example);
+    throw UsageError(syntax.positionals[positionals_.size()] + " is missing; for example: " + exampleOf(syntax));
   for (const Option& option : syntax.options)
     if (option.required && !has(option.name))
-      throw UsageError("option " + quoted(usageOf(option)) + " is missing; for example: bin_picking " + syntax.example);
+      throw UsageError("option " + quoted(usageOf(option)) + " is missing; for example: " + exampleOf(syntax));
 }
 
 void Arguments::readOption(const Syntax& syntax, const std::vector<std::string>& words, std::size_t& next)
@@ -119,7 +126,7 @@ const std::vector<std::string>& Arguments::values(const std::string& option) con
 std::string helpText(const Syntax& syntax)
 {
   std::ostringstream out;
-  out << "usage: bin_picking " << syntax.command;
+  out << "usage: " << callOf(syntax);
   for (const std::string& positional : syntax.positionals)
     out << " " << positional;
   for (const Option& option : syntax.options)
@@ -131,7 +138,7 @@ std::string helpText(const Syntax& syntax)
     out << "  " << usage << std::string(usage.size() < HELP_COLUMN ? HELP_COLUMN - usage.size() : 1, ' ') << option.help
         << "\n";
   }
-  out << "\nexample: bin_picking " << syntax.example << "\n";
+  out << "\nexample: " << exampleOf(syntax) << "\n";
   return out.str();
 }
 

@@ -41,6 +41,7 @@ struct Syntax
   std::vector<std::string> positionals;  ///< placeholders, all required; "NAME..." as the last one: one or more
   std::vector<Option> options;           ///< --help is always there
   std::string example;                   ///< a command line that works, without the program's name
+  std::string program = "bin_picking";   ///< without a command, what stands alone
 };
 
 /// The command line of a sub-command, checked against its syntax.
