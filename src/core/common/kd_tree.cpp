@@ -68,8 +68,9 @@ KdTree::Neighbour KdTree::nearest(const Eigen::Vector3f& query, float max_distan
   float squared_distance = 0;
   nanoflann::KNNResultSet<float, int> result(1);
   result.init(&index, &squared_distance);
+  squared_distance = max_distance * max_distance;  // the result set's worst: the search looks no farther
   index_->tree.findNeighbors(result, query.data(), nanoflann::SearchParams());
-  if (index >= 0 && squared_distance < max_distance * max_distance)
+  if (index >= 0)
     neighbour = {index, squared_distance};
   return neighbour;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <cmath>
 #include <limits>
@@ -18,14 +19,27 @@ struct Correspondences
   double squared_error = 0;
 };
 
-Correspondences findCorrespondences(const KdTree& model, const OrientedPoints& scene, const Pose& T_camera_object,
-                                    double max_distance)
+/// Where a point has to be to have a correspondence: most of a bin is elsewhere. With room for what rounding moves.
+Eigen::AlignedBox3f boxAround(const OrientedPoints& model, double max_distance)
+{
+  Eigen::AlignedBox3f box;
+  for (const auto& point : model.points)
+    box.extend(point);
+  const Eigen::Vector3f around = Eigen::Vector3f::Constant(1.001f * static_cast<float>(max_distance));
+  return {box.min() - around, box.max() + around};
+}
+
+Correspondences findCorrespondences(const KdTree& model, const Eigen::AlignedBox3f& around_model,
+                                    const OrientedPoints& scene, const Pose& T_camera_object, double max_distance)
 {
   const Eigen::Isometry3f T_object_camera = T_camera_object.inverse().cast<float>();
   Correspondences pairs;
   for (const auto& point : scene.points)
   {
-    const auto nearest = model.nearest(T_object_camera * point, static_cast<float>(max_distance));
+    const Eigen::Vector3f point_object = T_object_camera * point;
+    if (!around_model.contains(point_object))
+      continue;
+    const auto nearest = model.nearest(point_object, static_cast<float>(max_distance));
     if (nearest.index < 0)
       continue;
     pairs.object.push_back(model.points()[static_cast<std::size_t>(nearest.index)].cast<double>());
@@ -75,16 +89,17 @@ IcpResult icpPointToPoint(const OrientedPoints& model, const OrientedPoints& sce
 {
   constexpr std::size_t MIN_PAIRS = 6;
   const KdTree tree(model.points);
+  const Eigen::AlignedBox3f around = boxAround(model, max_distance);
   IcpResult result;
   result.T_camera_object = initial;
-  Correspondences pairs = findCorrespondences(tree, scene, initial, max_distance);
+  Correspondences pairs = findCorrespondences(tree, around, scene, initial, max_distance);
   while (result.iterations < parameters.max_iterations && pairs.object.size() >= MIN_PAIRS && !result.converged)
   {
     const Pose next = alignPairs(pairs);
     result.converged = motion(pairs, result.T_camera_object, next) < parameters.convergence;
     result.T_camera_object = next;
     ++result.iterations;
-    pairs = findCorrespondences(tree, scene, next, max_distance);
+    pairs = findCorrespondences(tree, around, scene, next, max_distance);
   }
   result.correspondences = static_cast<int>(pairs.object.size());
   result.rms = pairs.object.empty() ? std::numeric_limits<double>::quiet_NaN()
