@@ -165,21 +165,21 @@ TEST(GraspPlanner, APartInTheMiddleIsTakenStraightDown)
   GraspDefinition definition = graspFromAbove("top");
   definition.approach = 0.08;
   definition.retreat = 0.12;
-  const GraspSelection selection = selectInBin({detectionAt({0.02, -0.01, 0.025})}, partWith({definition}));
+  const GraspSelection selection = selectInBin({detectionAt({0.02, -0.01, 0.015})}, partWith({definition}));
   ASSERT_EQ(selection.grasps.size(), 1u);
   EXPECT_TRUE(selection.rejected.empty());
   const Grasp& grasp = selection.grasps[0];
   EXPECT_EQ(grasp.part, "part");
   EXPECT_EQ(grasp.grasp_id, "top");
-  EXPECT_TRUE(inBin(grasp.tip.grasp).isApprox(Vector3d(0.02, -0.01, 0.025), 1e-12));
-  EXPECT_TRUE(inBin(grasp.tip.pre_grasp).isApprox(Vector3d(0.02, -0.01, 0.105), 1e-12));
-  EXPECT_TRUE(inBin(grasp.tip.retreat).isApprox(Vector3d(0.02, -0.01, 0.145), 1e-12));
+  EXPECT_TRUE(inBin(grasp.tip.grasp).isApprox(Vector3d(0.02, -0.01, 0.015), 1e-12));
+  EXPECT_TRUE(inBin(grasp.tip.pre_grasp).isApprox(Vector3d(0.02, -0.01, 0.095), 1e-12));
+  EXPECT_TRUE(inBin(grasp.tip.retreat).isApprox(Vector3d(0.02, -0.01, 0.135), 1e-12));
   EXPECT_TRUE(grasp.tip.pre_grasp.linear().isApprox(grasp.tip.grasp.linear()));
   EXPECT_TRUE(grasp.tip.retreat.linear().isApprox(grasp.tip.grasp.linear()));
   EXPECT_NEAR(grasp.tilt, 0, 1e-7);
-  // The fingers end 10 mm below the tips: 15 mm above the floor, which is nearer than any wall.
+  // The fingers end 10 mm below the tips: 5 mm above the floor, which is nearer than any wall.
   EXPECT_TRUE(grasp.collision_checked);
-  EXPECT_NEAR(grasp.clearance.distance, 0.015, 1e-9);
+  EXPECT_NEAR(grasp.clearance.distance, 0.005, 1e-9);
   EXPECT_EQ(grasp.clearance.kind, ObstacleKind::BinFloor);
   EXPECT_FALSE(grasp.reach_checked);
   EXPECT_GT(grasp.quality, 0);
@@ -390,9 +390,9 @@ TEST(GraspPlanner, FingersOnALinkageAreWhereTheyAreWhenOpenOnTheWayIn)
     }
   const Bin bin = binBelowCamera();
   const GraspSelection selection =
-      planWith({detectionAt({0, 0, 0.03})}, {partWith({graspFromAbove("top")})}, gripper, &bin, {});
+      planWith({detectionAt({0, 0, 0.02})}, {partWith({graspFromAbove("top")})}, gripper, &bin, {});
   ASSERT_EQ(selection.grasps.size(), 1u);
-  EXPECT_NEAR(selection.grasps[0].clearance.distance, 0.017, 1e-9);
+  EXPECT_NEAR(selection.grasps[0].clearance.distance, 0.007, 1e-9);
 }
 
 TEST(GraspPlanner, TheWayInIsCheckedAndNotOnlyItsEnds)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../../src/core/grasping/body_sweep.hpp"
+#include "../../src/core/grasping/column_spans.hpp"
 #include "bin_picking_perception/common/error.hpp"
 #include "core/bin_of_grasps.hpp"
 #include "core/mesh_shapes.hpp"
@@ -44,7 +45,8 @@ TrainedModel boxModel(const std::string& name, const Vector3d& size)
   TrainedModel model;
   model.name = name;
   model.mesh = test::box(static_cast<float>(size.x()), static_cast<float>(size.y()), static_cast<float>(size.z()));
-  model.surface = sampleSurface(model.mesh, 0.0015, 1);
+  model.parameters.surface_spacing = 0.0015;
+  model.surface = sampleSurface(model.mesh, model.parameters.surface_spacing, 1);
   model.field = DistanceField(sampleSurface(model.mesh, 0.0005, 2), 0.001, 0.006);
   return model;
 }
@@ -296,6 +298,56 @@ TEST(Obstacles, WhatLiesOnTheTargetIsNotLifted)
   }
 }
 
+TEST(ColumnSpans, holdAllSurfaceThatIsAsNearAsAsked)
+{
+  const OrientedPoints surface = sampleSurface(block().mesh, 0.0015, 1);
+  const SurfaceBlocks blocks(surface.points);
+  const Eigen::Vector3f direction = Eigen::Vector3f(0.2f, -0.3f, 0.9f).normalized();
+  const float most = 0.0135f;
+  const ColumnSpans spans(blocks, direction, most);
+  for (const float distance : {0.002f, 0.0055f, most})
+  {
+    const ColumnSpans wide = spans.within(distance);
+    std::size_t held = 0;
+    for (float x = -0.04f; x <= 0.04f; x += 0.0021f)
+      for (float y = -0.04f; y <= 0.04f; y += 0.0021f)
+      {
+        const Eigen::Vector3f at(x, y, 0.01f);
+        const ColumnSpans::Span span = wide.at(at);
+        for (const Eigen::Vector3f& p : surface.points)
+        {
+          const float along = direction.dot(p);
+          if ((p - at - (along - direction.dot(at)) * direction).norm() > distance)
+            continue;
+          ++held;
+          ASSERT_LE(span.begin, along) << at.transpose() << ", within " << distance;
+          ASSERT_GE(span.end, along) << at.transpose() << ", within " << distance;
+        }
+      }
+    EXPECT_GT(held, 1000u);
+    EXPECT_GT(wide.at({0.1f, 0.1f, 0}).begin, wide.at({0.1f, 0.1f, 0}).end) << "far beside it there is nothing";
+  }
+}
+
+TEST(Obstacles, WhatLiesOnAnyEdgeOfTheTargetHoldsIt)
+{
+  // Without a cloud, which would show it too.
+  const Bin bin = binBelowCamera();
+  const Vector3d up = wayUp(GRASP, WIDTH).motion_camera;
+  const auto isFree = [&](const Vector3d& other) {
+    const std::vector<PlacedPart> parts = {{&block(), inCamera({0, 0, 0.015})}, {&block(), inCamera(other)}};
+    return Obstacles(nullptr, &bin, parts, {}, Executor(1)).pulledOut(up, 0).free();
+  };
+  for (const Vector3d& side : {Vector3d(BLOCK.x(), 0, 0), Vector3d(0, BLOCK.y(), 0)})
+    for (const double sign : {-1.0, 1.0})
+    {
+      const Vector3d over_edge = sign * side;
+      const Vector3d inward = -over_edge.normalized();
+      EXPECT_FALSE(isFree(Vector3d(0, 0, 0.045) + over_edge + 0.001 * inward)) << over_edge.transpose();
+      EXPECT_TRUE(isFree(Vector3d(0, 0, 0.045) + over_edge - 0.005 * inward)) << over_edge.transpose();
+    }
+}
+
 TEST(Obstacles, ANeighbourThatTheTargetTouchesDoesNotHoldIt)
 {
   Scene scene;
@@ -414,8 +466,9 @@ TEST(Obstacles, FloorWallAndRim)
   EXPECT_NEAR(floor.required, 0.003, 1e-9);
   EXPECT_FALSE(floor.free());
   EXPECT_TRUE(obstacles.approach(twoFingers(), wayDown({0, 0, 0.009}, OPENING), 0).free());
-  // The finger's outer face at 35 mm from the tip, the wall at 120 mm.
-  const Clearance wall = obstacles.approach(twoFingers(), wayDown({0, 0.12 - 0.035 - 0.001, 0.05}, OPENING), 0);
+  // The finger's outer face at 35 mm from the tip, the wall at 120 mm; the palm stays 10 mm over the rim.
+  const double high = bin.inner_size.z() - 0.05;
+  const Clearance wall = obstacles.approach(twoFingers(), wayDown({0, 0.12 - 0.035 - 0.001, high}, OPENING), 0);
   EXPECT_EQ(wall.kind, ObstacleKind::BinWall);
   EXPECT_EQ(wall.obstacle, "wall at +y");
   EXPECT_NEAR(wall.distance, 0.001, 1e-6);

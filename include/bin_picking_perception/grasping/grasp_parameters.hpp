@@ -15,6 +15,7 @@ struct GraspParameters
   double min_matching_rate = 0.85;  // the paper: above 85 % the robot succeeds
   int continuous_symmetry_steps = 12;
   int max_grasps = 20;
+  int enough_grasps = 8;
   // What makes one grasp better than another: shares of the quality, relative to their sum.
   double weight_score = 4;
   double weight_height = 2;

@@ -29,11 +29,11 @@ struct PreparedPart;
 /// from over the rim to the pre-grasp, and straight up until the part is out.
 ///
 /// What is written comes first: copies turned or tilted by a tolerance are tried for detections that have no other
-/// grasp, in their order, as long as the answer has room (max_grasps), and up to a few for each.
+/// grasp, in their order, as long as there are fewer than enough_grasps (and max_grasps), and up to a few for each.
 ///
-/// The rejected are listed detection by detection: each grasp as written and each symmetric copy (one for all copies
-/// where the reason does not depend on the copy, and of those too steep the least steep), and of the turned and tilted
-/// copies one for each grasp and kind of rejection that is not listed yet.
+/// The rejected are listed detection by detection: each grasp as written and each of its copies around an axis or by
+/// symmetry (one for all where the reason does not depend on the copy, and of those too steep the least steep), and of
+/// the turned and tilted copies one for each grasp as written and kind of rejection that is not listed yet.
 class GraspPlanner
 {
 public:

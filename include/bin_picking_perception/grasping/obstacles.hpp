@@ -56,7 +56,7 @@ constexpr char HELD_PART[] = "held part";
 struct Clearance
 {
   /// Signed, metres; < 0: how deep the body reaches in. Apart, a lower bound, exact where a face is nearest; infinite
-  /// where nothing is near (20 mm for the bin, or bin_clearance if that is more; 4 mm for the rest). Of unseen space:
+  /// where nothing is near (5 mm more than bin_clearance for the bin; 4 mm for the rest). Of unseen space:
   /// only what exceeds the entry allowed. Of the held part: how much deeper than at rest, negative; among parts and
   /// measured points the search ends beyond max_drag, so that more than that is only a bound.
   double distance = std::numeric_limits<double>::infinity();
@@ -101,7 +101,8 @@ struct ToolMotion
 ///
 /// What is not finite is never free: such a pose, motion, opening or bin is refused.
 ///
-/// A check stops at the first body that comes too near: the clearance then names that body's worst obstacle.
+/// A check stops at the first kind of obstacle to which a body comes too near: the bin, the target, other parts, the
+/// cloud. The clearance names the worst of that kind.
 class Obstacles
 {
 public:

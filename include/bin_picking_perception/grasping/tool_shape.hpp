@@ -29,4 +29,7 @@ ToolShape shapeAt(const Gripper& gripper, double opening);
 /// it also turns, the hull of both ends misses less than 0.1 mm of it for rows 5 degrees apart on 80 mm.
 /// \throws ParameterError as above
 ToolShape closingShape(const Gripper& gripper, double from, double to);
+
+/// What the pieces cover while they all move straight by a motion, tool0 frame, metres.
+ToolShape movedBy(const ToolShape& tool, const Eigen::Vector3d& motion);
 }  // namespace bin_picking

@@ -47,6 +47,7 @@ Pose rotationAbout(const Symmetry::Axis& axis, double angle);
 struct GraspDefinition
 {
   std::string id;
+  std::string copy_of;  ///< id of the grasp that this one repeats elsewhere around an axis; empty: none
   /// Frame between the finger tips: Z = approach, Y = finger closing direction.
   Pose T_object_tip = Pose::Identity();
   double width = 0;        ///< finger distance when holding, metres

@@ -23,4 +23,18 @@ std::vector<BinSide> binSides(const Bin& bin)
   add("wall at -y", false, {0, -y, z}, {outer.x(), t, inner.z()});
   return sides;
 }
+
+bool isWellInside(const ConvexBody& body, const Pose& T_bin_body, const Eigen::Vector3d& motion_bin, const Bin& bin,
+                  double distance)
+{
+  Eigen::AlignedBox3d covered;
+  for (const Eigen::Vector3d& v : body.vertices)
+    covered.extend(T_bin_body * v);
+  covered.extend(Eigen::AlignedBox3d(covered.min() + motion_bin, covered.max() + motion_bin));
+  if (covered.min().z() >= bin.inner_size.z() + distance)
+    return true;
+  const Eigen::Array2d half = 0.5 * bin.inner_size.head<2>().array() - distance;
+  return covered.min().z() >= distance && (covered.min().head<2>().array() >= -half).all() &&
+         (covered.max().head<2>().array() <= half).all();
+}
 }  // namespace bin_picking

@@ -20,4 +20,9 @@ struct BinSide
 
 /// The walls stand on the floor and end at the rim; the floor reaches under them.
 std::vector<BinSide> binSides(const Bin& bin);
+
+/// Whether a body that moves straight stays that far from all sides, because it stays over the rim, or within the walls
+/// and over the floor. If not, it may still. \param T_bin_body, motion_bin of the body, metres
+bool isWellInside(const ConvexBody& body, const Pose& T_bin_body, const Eigen::Vector3d& motion_bin, const Bin& bin,
+                  double distance);
 }  // namespace bin_picking

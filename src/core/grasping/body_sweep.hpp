@@ -16,6 +16,12 @@ constexpr float LOOK_AHEAD = 0.004f;
 
 using Planes = std::vector<Eigen::Vector4f>;
 
+struct Sphere
+{
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  float radius = 0;
+};
+
 /// What a body of the gripper covers while it moves, camera frame, in the forms that the checks read.
 struct BodySweep
 {
@@ -45,11 +51,16 @@ struct Encounter
   bool free() const { return distance >= required; }
 };
 
-/// Keeps the one that matters more. Most of all matters what is not a number: nothing is known of it, so that it is
+/// Whether the other matters more. Most of all matters what is not a number: nothing is known of it, so that it is
 /// never free.
+inline bool isWorse(const Encounter& other, const Encounter& worst)
+{
+  return !std::isnan(worst.margin()) && !(other.margin() >= worst.margin());
+}
+
 inline void keepWorse(Encounter& worst, const Encounter& other)
 {
-  if (!std::isnan(worst.margin()) && !(other.margin() >= worst.margin()))
+  if (isWorse(other, worst))
     worst = other;
 }
 
@@ -71,17 +82,16 @@ inline std::vector<Eigen::Vector3f> cornersOf(const Eigen::AlignedBox3f& box, co
 }
 
 /// The planes in the frame from which T leads into theirs.
-inline Planes inFrame(const Planes& planes, const Eigen::Isometry3f& T)
+inline void toFrame(const Eigen::Isometry3f& T, const Planes& planes, Planes& moved)
 {
   const Eigen::Matrix3f back = T.linear().transpose();
   const Eigen::Vector3f origin = T.translation();
-  Planes moved = planes;
-  for (Eigen::Vector4f& plane : moved)
+  moved.resize(planes.size());
+  for (std::size_t i = 0; i < planes.size(); ++i)
   {
-    const Eigen::Vector3f normal = plane.head<3>();
-    plane.w() += normal.dot(origin);
-    plane.head<3>() = back * normal;
+    const Eigen::Vector3f normal = planes[i].head<3>();
+    const Eigen::Vector3f turned = back * normal;
+    moved[i] = {turned.x(), turned.y(), turned.z(), planes[i].w() + normal.dot(origin)};
   }
-  return moved;
 }
 }  // namespace bin_picking

@@ -155,10 +155,9 @@ bool checkGripper(Grasp& grasp, const PreparedGrasp& prepared, const Eigen::Vect
   grasp.collision_checked = true;
   const Obstacles& obstacles = *s.obstacles;
   const std::size_t target = grasp.detection_index;
-  const Eigen::Vector3d at_grasp = grasp.tool0.grasp.translation();
-  const ToolMotion in{grasp.tool0.pre_grasp, at_grasp - grasp.tool0.pre_grasp.translation(), grasp.opening};
+  const ToolMotion in{grasp.tool0.pre_grasp, Eigen::Vector3d::Zero(), grasp.opening};  // the shape has moved
   const ToolMotion out{grasp.tool0.grasp, out_camera, grasp.width};
-  return passes(grasp, obstacles.approach(prepared.open, in, target), "On the way in") &&
+  return passes(grasp, obstacles.approach(prepared.way_in, in, target), "On the way in") &&
          passes(grasp, obstacles.closing(prepared.closing, grasp.tool0.grasp, target), "While closing") &&
          passes(grasp, obstacles.leaving(prepared.closed, out, target), "On the way out") &&
          comesDown(grasp, prepared.open, s);

@@ -1,44 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
-#include "column_tops.hpp"
+#include "column_spans.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "sweep_lanes.hpp"
 
 namespace bin_picking
 {
-ColumnTops::ColumnTops(const SurfaceBlocks& surface, const Eigen::Vector3f& direction, float around)
+ColumnSpans::ColumnSpans(const SurfaceBlocks& surface, const Eigen::Vector3f& direction, float most)
 {
   across_.row(0) = direction.unitOrthogonal();
   across_.row(1) = direction.cross(across_.row(0).transpose());
   Eigen::AlignedBox2f box;
-  float largest = 0;
-  for (const SurfaceBlocks::Block& block : surface.blocks())
+  for (const Sphere& patch : surface.patches())
   {
-    box.extend(across_ * block.center);
-    largest = std::max(largest, block.radius);
+    box.extend(across_ * patch.center);
+    patch_ = std::max(patch_, patch.radius);
   }
   if (box.isEmpty())
     return;
-  const auto margin = static_cast<std::size_t>(std::ceil((largest + around) / CELL)) + 1;
+  const std::size_t margin = 2 * cellsFor(patch_ + most);  // within() looks so far, and is asked from so far
   low_ = box.min().array() - static_cast<float>(margin) * CELL;
   const Eigen::Array2f cells = box.sizes().array() / CELL;
-  columns_ = static_cast<std::size_t>(cells.x()) + 2 + 2 * margin;  // one of them for what rounding moves
+  columns_ = stride_ = static_cast<std::size_t>(cells.x()) + 2 + 2 * margin;  // one of them for what rounding moves
   rows_ = static_cast<std::size_t>(cells.y()) + 2 + 2 * margin;
-
-  // Entered a margin late, so that the largest of the values from a cell on is that of the cells around.
-  const std::size_t window = 2 * margin + 1;
-  const Eigen::Vector2f late = Eigen::Vector2f::Constant(static_cast<float>(margin));
-  tops_.assign(columns_ * rows_, -std::numeric_limits<float>::infinity());
-  for (const SurfaceBlocks::Block& block : surface.blocks())
+  ahead_.assign(stride_ * rows_, -std::numeric_limits<float>::infinity());
+  back_ = ahead_;
+  for (const Sphere& patch : surface.patches())
   {
-    float& top = tops_[index((across_ * block.center - low_) / CELL + late)];
-    top = std::max(top, direction.dot(block.center) + block.radius);
+    const std::size_t cell = index((across_ * patch.center - low_) / CELL);
+    const float along = direction.dot(patch.center);
+    ahead_[cell] = std::max(ahead_[cell], along + patch.radius);
+    back_[cell] = std::max(back_[cell], patch.radius - along);
   }
-  raiseToWindow(tops_.data(), tops_.size(), 1, window);
-  raiseToWindow(tops_.data(), tops_.size(), columns_, window);
+}
+
+ColumnSpans ColumnSpans::within(float distance) const
+{
+  // A cell takes the largest value from itself on; seen from a margin farther on, that is the largest around.
+  const std::size_t margin = cellsFor(patch_ + distance);
+  ColumnSpans wide = *this;
+  wide.low_.array() += static_cast<float>(margin) * CELL;
+  wide.columns_ -= std::min(margin, columns_);
+  for (std::vector<float>* farthest : {&wide.ahead_, &wide.back_})
+  {
+    raiseToWindow(farthest->data(), farthest->size(), 1, 2 * margin + 1);
+    raiseToWindow(farthest->data(), farthest->size(), stride_, 2 * margin + 1);
+  }
+  return wide;
 }
 }  // namespace bin_picking

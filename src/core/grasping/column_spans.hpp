@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -9,35 +10,53 @@
 
 namespace bin_picking
 {
-/// How far a part's surface reaches along a direction, column by column: what moves along it from above that meets
-/// nothing, which most of a part's surroundings do. Part frame.
-class ColumnTops
+/// From where to where a part's surface reaches along a direction, column by column: what moves along it elsewhere
+/// meets nothing, as most of a part's surroundings do. Part frame.
+class ColumnSpans
 {
 public:
-  /// \param direction of unit length \param around what is this close to a column counts as in it, metres
-  ColumnTops(const SurfaceBlocks& surface, const Eigen::Vector3f& direction, float around);
+  /// Coordinates along the direction, metres; where there is no surface, the end lies before the beginning.
+  struct Span
+  {
+    float begin = std::numeric_limits<float>::infinity();
+    float end = -std::numeric_limits<float>::infinity();
+  };
 
-  /// The largest coordinate along the direction of any surface near the point's column; -infinity where there is none.
-  float at(const Eigen::Vector3f& point) const
+  /// \param direction of unit length \param most of what may be asked of within(), metres
+  ColumnSpans(const SurfaceBlocks& surface, const Eigen::Vector3f& direction, float most);
+
+  /// The same where all that is so close to a column counts as in it, metres.
+  ColumnSpans within(float distance) const;
+
+  /// Of the point's column.
+  Span at(const Eigen::Vector3f& point) const
   {
     const Eigen::Vector2f q = (across_ * point - low_) / CELL;
     const bool inside =
         q.x() >= 0 && q.y() >= 0 && q.x() < static_cast<float>(columns_) && q.y() < static_cast<float>(rows_);
-    return inside ? tops_[index(q)] : -std::numeric_limits<float>::infinity();
+    return inside ? Span{-back_[index(q)], ahead_[index(q)]} : Span{};
   }
 
 private:
-  static constexpr float CELL = 0.002f;  // metres
+  static constexpr float CELL = 0.003f;  // metres
 
+  static std::size_t cellsFor(float distance)
+  {
+    constexpr float ROUNDING = 1e-5f;
+    return static_cast<std::size_t>(std::ceil((distance + ROUNDING) / CELL));
+  }
   std::size_t index(const Eigen::Vector2f& q) const
   {
-    return static_cast<std::size_t>(q.y()) * columns_ + static_cast<std::size_t>(q.x());
+    return static_cast<std::size_t>(q.y()) * stride_ + static_cast<std::size_t>(q.x());
   }
 
   Eigen::Matrix<float, 2, 3> across_;  ///< to coordinates in the plane of the columns
   Eigen::Vector2f low_ = Eigen::Vector2f::Zero();
-  std::size_t columns_ = 0;
+  float patch_ = 0;  ///< largest radius of what was entered by its middle, metres
+  std::size_t stride_ = 0;
+  std::size_t columns_ = 0;  ///< up to here each knows what is around it
   std::size_t rows_ = 0;
-  std::vector<float> tops_;
+  std::vector<float> ahead_;  ///< the farthest along the direction
+  std::vector<float> back_;   ///< and against it
 };
 }  // namespace bin_picking

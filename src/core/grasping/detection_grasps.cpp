@@ -38,6 +38,7 @@ DetectionGrasps::DetectionGrasps(std::size_t index, const PartDefinition& defini
       part_(part),
       up_object_(detection_.T_camera_object.linear().transpose() * s.up_camera),
       over_rim_(s.rim - lowestOf(*s.scene.models[detection_.model_index], detection_.T_camera_object, s.up_camera)),
+      least_cosine_(std::cos(s.setup.parameters.max_tilt) - ROUNDING),
       listed_(part.grasps.size()),
       refusal_(checkDetection(index, s))
 {
@@ -52,12 +53,13 @@ void DetectionGrasps::tryAsWritten()
   for (std::size_t v = 0; v < part_.as_written; ++v)
   {
     const std::size_t g = part_.variants[v].grasp;
+    std::optional<std::size_t>& least = least_steep[part_.grasps[g].as_written];
     if (const Refusal& refusal = refusalOf(g); refusal.rejection != GraspRejection::None)
       refuse(v, refusal);
     else if (!isTooSteep(v))
       asWritten(v);
-    else if (!least_steep[g] || tiltOf(v) < tiltOf(*least_steep[g]))
-      least_steep[g] = v;
+    else if (!least || steeper(*least, v))
+      least = v;
   }
   for (const std::optional<std::size_t>& v : least_steep)
     if (v)
@@ -121,7 +123,12 @@ void DetectionGrasps::turned(std::size_t v)
 
 bool DetectionGrasps::isListed(std::size_t g, GraspRejection rejection) const
 {
-  return listed_[g].test(static_cast<std::size_t>(rejection));
+  return listed_[part_.grasps[g].as_written].test(static_cast<std::size_t>(rejection));
+}
+
+bool DetectionGrasps::steeper(std::size_t v, std::size_t than) const
+{
+  return -part_.approaches_object[v].dot(up_object_) < -part_.approaches_object[than].dot(up_object_);
 }
 
 /// Radians, between the approach and straight down into the bin (or the view direction).
@@ -134,7 +141,7 @@ double DetectionGrasps::tiltOf(std::size_t v) const
 bool DetectionGrasps::isTooSteep(std::size_t v) const
 {
   const double max_tilt = s_.setup.parameters.max_tilt;
-  return -part_.approaches_object[v].dot(up_object_) < std::cos(max_tilt) - ROUNDING || !(tiltOf(v) <= max_tilt);
+  return -part_.approaches_object[v].dot(up_object_) < least_cosine_ || !(tiltOf(v) <= max_tilt);
 }
 
 /// Out of a bin, all copies of a grasp are lifted alike: what others hold down, none of them brings out.
@@ -218,7 +225,7 @@ void DetectionGrasps::allow(Grasp&& grasp, std::size_t g)
 
 void DetectionGrasps::list(Grasp&& grasp, std::size_t g)
 {
-  listed_[g].set(static_cast<std::size_t>(grasp.rejection));
+  listed_[part_.grasps[g].as_written].set(static_cast<std::size_t>(grasp.rejection));
   rejected.push_back(std::move(grasp));
 }
 }  // namespace bin_picking

@@ -20,8 +20,8 @@ public:
   DetectionGrasps(std::size_t index, const PartDefinition& definition, const PreparedPart& part,
                   const GraspSurroundings& s);
 
-  /// All grasps as written, and their symmetric copies. Of the copies of a grasp that are too steep, half of them as a
-  /// rule, the least steep is listed for all.
+  /// All grasps as written, and their copies around axes and by symmetry. Of the copies of a grasp that are too steep,
+  /// half of them as a rule, the least steep is listed for all.
   void tryAsWritten();
 
   /// Those that use a tolerance, up to the first few that are allowed. One that is not is listed if no other of its
@@ -40,6 +40,7 @@ private:
   void asWritten(std::size_t v);
   void turned(std::size_t v);
   bool isListed(std::size_t g, GraspRejection rejection) const;
+  bool steeper(std::size_t v, std::size_t than) const;
   double tiltOf(std::size_t v) const;
   bool isTooSteep(std::size_t v) const;
   bool isHeldDown(std::size_t g) const;
@@ -60,8 +61,9 @@ private:
   const PartDefinition& definition_;
   const PreparedPart& part_;
   Eigen::Vector3d up_object_;
-  double over_rim_;  ///< how far the part has to be lifted to be out of the bin, metres; < 0 without a bin
-  std::vector<std::bitset<32>> listed_;  ///< per grasp, by rejection
+  double over_rim_;      ///< how far the part has to be lifted to be out of the bin, metres; < 0 without a bin
+  double least_cosine_;  ///< of the tilt, less rounding
+  std::vector<std::bitset<32>> listed_;  ///< per grasp as written, by rejection
   std::optional<WayOut> way_out_;
   Refusal refusal_;  ///< of all grasps
 };

@@ -19,6 +19,11 @@ void GraspParameters::visit(ParameterVisitor& v)
   v.field({"continuous_symmetry_steps", "", "copies of a grasp that are offered around an axis of revolution", 1, 360},
           continuous_symmetry_steps);
   v.field({"max_grasps", "", "most grasps that are returned", 1, 10000}, max_grasps);
+  v.field({"enough_grasps", "",
+           "as long as there are fewer, copies that a tolerance allows are tried for parts that have no other grasp; "
+           "larger offers more and takes longer",
+           0, 10000},
+          enough_grasps);
   // At least one weight has to be positive: the quality is relative to their sum.
   v.field({"weight_score", "", "share of the detection's score in the quality", 0.001, 100}, weight_score);
   v.field({"weight_height", "", "share of the height in the pile: larger empties the bin from the top", 0, 100},

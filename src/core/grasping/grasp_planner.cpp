@@ -52,8 +52,8 @@ std::size_t mostGrasps(const GraspSurroundings& s)
 }
 
 /// What is written comes first: turned and tilted copies only of parts that have nothing else, best detections first,
-/// and only as long as there is room for more grasps. A fixed number at a time, so that threads change nothing.
-void tryTurned(std::vector<DetectionGrasps>& grasps, std::size_t most, const Executor& executor)
+/// and only as long as there are few grasps. A fixed number at a time, so that threads change nothing.
+void tryTurned(std::vector<DetectionGrasps>& grasps, std::size_t enough, const Executor& executor)
 {
   constexpr std::size_t AT_A_TIME = 8;
   std::size_t allowed = 0;
@@ -64,7 +64,7 @@ void tryTurned(std::vector<DetectionGrasps>& grasps, std::size_t most, const Exe
     if (of_one.isWithoutGrasp())
       without.push_back(&of_one);
   }
-  for (std::size_t begin = 0; begin < without.size() && allowed < most; begin += AT_A_TIME)
+  for (std::size_t begin = 0; begin < without.size() && allowed < enough; begin += AT_A_TIME)
   {
     const std::size_t end = std::min(begin + AT_A_TIME, without.size());
     executor.forEach(end - begin, [&](std::size_t i) { without[begin + i]->tryTurned(); });
@@ -144,7 +144,8 @@ GraspSelection GraspPlanner::plan(const Scene& scene, const Request& request) co
 
   std::vector<DetectionGrasps> grasps = findable(*prepared_, s);
   executor_.forEach(grasps.size(), [&](std::size_t i) { grasps[i].tryAsWritten(); });
-  tryTurned(grasps, mostGrasps(s), executor_);
+  const auto enough = static_cast<std::size_t>(setup_.parameters.enough_grasps);
+  tryTurned(grasps, std::min(enough, mostGrasps(s)), executor_);
   return ranked(std::move(grasps), mostGrasps(s), s);
 }
 }  // namespace bin_picking

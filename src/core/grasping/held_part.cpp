@@ -10,6 +10,8 @@ namespace bin_picking
 namespace
 {
 constexpr float MIN_STEP = 0.0005f;  // metres: where a point is about to touch
+constexpr float LARGE = 0.008f;      // metres: radius up to which many points are passed over together
+constexpr float TOUCH = 0.001f;      // metres: once something is about to touch, only what is as near matters
 
 Eigen::Vector3f wayOfOthers(const Eigen::Vector3d& motion)
 {
@@ -28,18 +30,21 @@ HeldPart::HeldPart(const DistanceField& field, const SurfaceBlocks& surface, flo
       max_drag_(max_drag),
       motion_camera_(motion_camera),
       corners_(cornersOf(surface.box(), Eigen::Isometry3f(T_camera_object.cast<float>()))),
-      tops_(surface, way_object_, LOOK_AHEAD + spacing)
+      in_sight_{LOOK_AHEAD + spacing, ColumnSpans(surface, way_object_, LOOK_AHEAD + LARGE + spacing)},
+      touching_{TOUCH + spacing, in_sight_.columns.within(TOUCH + spacing)},
+      of_spheres_{LOOK_AHEAD + LARGE + spacing, in_sight_.columns.within(LOOK_AHEAD + LARGE + spacing)}
 {
+  in_sight_.columns = in_sight_.columns.within(in_sight_.distance);
   for (std::size_t k = 0; k < 8; ++k)
     corners_.emplace_back(corners_[k] + motion_camera.cast<float>());
   for (const Eigen::Vector3f& corner : corners_)
     box_.extend(corner);
 }
 
-bool HeldPart::passes(const Eigen::Vector3f& center, float radius, float& from, float& to) const
+/// On which a sphere at rest reaches into the part's box.
+HeldPart::Stretch HeldPart::stretchInBox(const Eigen::Vector3f& center, float radius) const
 {
-  from = 0;
-  to = length_;
+  Stretch stretch{0, length_};
   for (int axis = 0; axis < 3; ++axis)
   {
     const float low = surface_.box().min()[axis] - radius - center[axis];
@@ -47,60 +52,72 @@ bool HeldPart::passes(const Eigen::Vector3f& center, float radius, float& from, 
     if (std::abs(way_object_[axis]) < 1e-6f)
     {
       if (low > 0 || high < 0)
-        return false;
+        return {0, -1};
       continue;
     }
     const float at_low = low * per_way_[axis];
     const float at_high = high * per_way_[axis];
-    from = std::max(from, std::min(at_low, at_high));
-    to = std::min(to, std::max(at_low, at_high));
+    stretch.from = std::max(stretch.from, std::min(at_low, at_high));
+    stretch.to = std::min(stretch.to, std::max(at_low, at_high));
   }
-  return from <= to;
+  return stretch;
+}
+
+/// On which a point is near, or may be.
+HeldPart::Stretch HeldPart::stretchNear(const Eigen::Vector3f& center, const Near& near) const
+{
+  const ColumnSpans::Span span = near.columns.at(center);
+  const float at_rest = center.dot(way_object_);
+  return {std::max(0.0f, span.begin - near.distance - at_rest), std::min(length_, span.end + near.distance - at_rest)};
+}
+
+bool HeldPart::mayMeetInObject(const Sphere& points) const
+{
+  if (points.radius <= LARGE && stretchNear(points.center, of_spheres_).isEmpty())
+    return false;
+  return !stretchInBox(points.center, points.radius).isEmpty();
+}
+
+/// Where on the way a point may be near. \param room only what comes nearer matters, metres
+HeldPart::Stretch HeldPart::whereNear(const Eigen::Vector3f& point, float room) const
+{
+  const Stretch near = stretchNear(point, room < TOUCH ? touching_ : in_sight_);
+  if (near.isEmpty())
+    return near;
+  const Stretch in_box = stretchInBox(point, 0);
+  return {std::max(near.from, in_box.from), std::min(near.to, in_box.to)};
 }
 
 /// How much deeper the point gets into the part than it is at the start: <= 0 not at all. Each step is as long as the
 /// distance from the surface allows. Ends where it is more than max_drag: farther on it may be deeper.
-float HeldPart::deepening(const Eigen::Vector3f& point) const
+float HeldPart::deepening(const Eigen::Vector3f& point, const Stretch& near) const
 {
-  float from = 0;
-  float to = 0;
-  if (!mayMeet(point) || !passes(point, 0, from, to))
-    return -field_.band();
-  const float at_rest = std::min(0.0f, field_.at(point));
+  const auto atRest = [&] { return std::min(0.0f, field_.at(point)); };  // what is not inside does not ask
   float nearest = field_.band();
-  for (float way = from; way <= to;)
+  for (float way = near.from;;)
   {
     const float distance = field_.at(point + way * way_object_);
-    if (!(distance >= at_rest - max_drag_))  // too deep, or not a number
-      return at_rest - distance;
+    if (!(distance >= -max_drag_) && !(distance >= atRest() - max_drag_))  // too deep, or not a number
+      return atRest() - distance;
     nearest = std::min(nearest, distance);
-    way += std::max(distance, MIN_STEP);
+    if (way >= near.to)
+      break;
+    way = std::min(way + std::max(distance, MIN_STEP), near.to);
   }
-  return at_rest - nearest;
-}
-
-void HeldPart::meet(const Eigen::Vector3f& point_camera, ObstacleKind kind, int index, Encounter& worst) const
-{
-  const float deeper = deepening(T_object_camera_ * point_camera);
-  keepWorse(worst, {-deeper, -max_drag_, kind, index, point_camera});
+  return nearest < 0 ? atRest() - nearest : -nearest;
 }
 
 void HeldPart::meet(const SurfaceBlocks& other, const Pose& T_camera_other, int index, Encounter& worst) const
 {
   const Eigen::Isometry3f T_object_other = T_object_camera_ * Eigen::Isometry3f(T_camera_other.cast<float>());
   const Eigen::Isometry3f T_camera(T_camera_other.cast<float>());
-  float from = 0;
-  float to = 0;
+  const auto isOwn = [] { return false; };
   for (const SurfaceBlocks::Block& block : other.blocks())
   {
-    if (!passes(T_object_other * block.center, block.radius, from, to))
+    if (!mayMeetInObject({T_object_other * block.around.center, block.around.radius}))
       continue;
     for (std::size_t k = block.begin; k < block.end; ++k)
-    {
-      const float deeper = deepening(T_object_other * other.point(k));
-      if (!(deeper - max_drag_ <= -worst.margin()))
-        keepWorse(worst, {-deeper, -max_drag_, ObstacleKind::Part, index, T_camera * other.point(k)});
-    }
+      meet(T_camera * other.point(k), ObstacleKind::Part, index, isOwn, worst);
     if (!worst.free())
       return;
   }
@@ -113,7 +130,9 @@ void HeldPart::meetSide(const ConvexBody& side, ObstacleKind kind, int index, En
     Planes planes;
     for (const Eigen::Vector4d& plane : body.planes)
       planes.push_back(plane.cast<float>());
-    return inFrame(planes, T_object_camera_.inverse());
+    Planes moved;
+    toFrame(T_object_camera_.inverse(), planes, moved);
+    return moved;
   };
   Encounter at_rest;
   Encounter on_the_way;

@@ -4,7 +4,7 @@
 
 #include "bin_picking_perception/model/distance_field.hpp"
 #include "body_sweep.hpp"
-#include "column_tops.hpp"
+#include "column_spans.hpp"
 
 namespace bin_picking
 {
@@ -22,9 +22,24 @@ public:
   /// The corners of the part's own box at both ends of the way, camera frame.
   const std::vector<Eigen::Vector3f>& corners() const { return corners_; }
 
+  /// Whether any point within the sphere may come near on the way: most lie under the part, or beside it.
+  bool mayMeet(const Sphere& points_camera) const
+  {
+    return mayMeetInObject({T_object_camera_ * points_camera.center, points_camera.radius});
+  }
+
   /// Offers a point that rests in the camera frame: by how much it gets deeper into the part than it is now; no more
   /// than the first depth beyond max_drag that was met.
-  void meet(const Eigen::Vector3f& point_camera, ObstacleKind kind, int index, Encounter& worst) const;
+  /// \param isOwn whether the point is the part's own, asked only of what is near on the way
+  template <typename IsOwn>
+  void meet(const Eigen::Vector3f& point_camera, ObstacleKind kind, int index, const IsOwn& isOwn,
+            Encounter& worst) const
+  {
+    const Eigen::Vector3f point_object = T_object_camera_ * point_camera;
+    const Stretch near = whereNear(point_object, worst.margin() - max_drag_);
+    if (!near.isEmpty() && !isOwn())
+      keepWorse(worst, {-deepening(point_object, near), -max_drag_, kind, index, point_camera});
+  }
 
   /// The same for all points of another part.
   void meet(const SurfaceBlocks& other, const Pose& T_camera_other, int index, Encounter& worst) const;
@@ -33,14 +48,25 @@ public:
   void meetSide(const ConvexBody& side, ObstacleKind kind, int index, Encounter& worst) const;
 
 private:
-  float deepening(const Eigen::Vector3f& point_object) const;
-  /// Whether the point may come near on its way: most others lie under the part, and beside it.
-  bool mayMeet(const Eigen::Vector3f& point_object) const
+  /// A part of the way that others make, seen from the part, metres.
+  struct Stretch
   {
-    return point_object.dot(way_object_) <= tops_.at(point_object) + LOOK_AHEAD;
-  }
-  /// The share of the way at which a sphere at rest enters the part's box; > 1: never.
-  bool passes(const Eigen::Vector3f& center_object, float radius, float& from, float& to) const;
+    float from;
+    float to;
+
+    bool isEmpty() const { return !(from <= to); }
+  };
+  /// What comes within a distance of the sampled surface, closed, passes through one of these columns.
+  struct Near
+  {
+    float distance;
+    ColumnSpans columns;
+  };
+  Stretch whereNear(const Eigen::Vector3f& point_object, float room) const;
+  float deepening(const Eigen::Vector3f& point_object, const Stretch& near) const;
+  bool mayMeetInObject(const Sphere& points) const;
+  Stretch stretchNear(const Eigen::Vector3f& center, const Near& near) const;
+  Stretch stretchInBox(const Eigen::Vector3f& center, float radius) const;
 
   const DistanceField& field_;
   const SurfaceBlocks& surface_;
@@ -52,6 +78,8 @@ private:
   Eigen::Vector3d motion_camera_;
   Eigen::AlignedBox3f box_;
   std::vector<Eigen::Vector3f> corners_;
-  ColumnTops tops_;
+  Near in_sight_;
+  Near touching_;
+  Near of_spheres_;  ///< up to the radius LARGE
 };
 }  // namespace bin_picking

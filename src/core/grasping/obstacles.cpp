@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -14,13 +13,14 @@
 #include "held_part.hpp"
 #include "seen_space.hpp"
 #include "surface_blocks.hpp"
+#include "tool_way.hpp"
 
 namespace bin_picking
 {
 namespace
 {
-// Distances from the bin beyond this are not asked for unless more is required, metres.
-constexpr double BIN_LOOK_AHEAD = 0.02;
+// Distances from the bin that are so much more than required are not asked for, metres; the ranking asks for less.
+constexpr double BIN_LOOK_AHEAD = 0.005;
 
 // A distance field is cut at its band: what is farther must not count as near.
 constexpr float BAND_SHARE = 0.9f;
@@ -68,13 +68,13 @@ struct Obstacles::Impl
     const SurfaceBlocks* surface = nullptr;
     Eigen::Isometry3f T_camera_object;
     Eigen::AlignedBox3f box_camera;
-    /// Of few parts: what others hold down needs no more than those.
-    mutable std::once_flag has_pixels;
-    mutable OwnPixels pixels;
+    std::optional<OwnPixels> pixels;  ///< with a cloud
   };
 
   ObstacleParameters parameters;
-  std::vector<BinSide> sides;  ///< none without a bin
+  std::optional<Bin> bin;
+  Pose T_bin_camera = Pose::Identity();  ///< with a bin
+  std::vector<BinSide> sides;            ///< none without a bin
   std::optional<SeenSpace> seen;
   std::map<const TrainedModel*, std::unique_ptr<SurfaceBlocks>> surfaces;
   std::vector<Part> parts;
@@ -92,63 +92,58 @@ struct Obstacles::Impl
     part.T_camera_object = Eigen::Isometry3f(part.placed.T_camera_object.cast<float>());
     for (const Eigen::Vector3f& corner : cornersOf(part.surface->box(), part.T_camera_object))
       part.box_camera.extend(corner);
+    if (!seen)
+      return;
+    const DistanceField& field = part.placed.model->field;
+    const float tolerance = std::min(static_cast<float>(parameters.target_tolerance), BAND_SHARE * field.band());
+    part.pixels.emplace(*seen, field, part.surface->box(), part.placed.T_camera_object, tolerance);
   }
 
-  const OwnPixels& pixelsOf(const Part& part) const
-  {
-    std::call_once(part.has_pixels, [&] {
-      const DistanceField& field = part.placed.model->field;
-      const float tolerance = std::min(static_cast<float>(parameters.target_tolerance), BAND_SHARE * field.band());
-      part.pixels = seen->ownPixels(field, part.surface->box(), part.placed.T_camera_object, tolerance);
-    });
-    return part.pixels;
-  }
+  /// Distances from the bin beyond this are not asked for, metres.
+  double binLookAhead() const { return parameters.bin_clearance + BIN_LOOK_AHEAD; }
 
-  void meetBin(const BodySweep& body, Encounter& worst) const
+  Encounter meetBin(const BodySweep& body) const
   {
-    const double look_ahead = std::max(BIN_LOOK_AHEAD, parameters.bin_clearance);
+    Encounter worst;
     for (std::size_t i = 0; i < sides.size(); ++i)
     {
       const BinSide& side = sides[i];
-      if (farApart(body.shape, side.box, look_ahead))
+      if (farApart(body.shape, side.box, binLookAhead()))
         continue;
       keepWorse(worst, {static_cast<float>(bin_picking::clearance(body.shape, side.box)),
                         static_cast<float>(parameters.bin_clearance),
                         side.floor ? ObstacleKind::BinFloor : ObstacleKind::BinWall, static_cast<int>(i)});
     }
+    return worst;
   }
 
-  void meetPart(const BodySweep& body, std::size_t index, bool is_target, Encounter& worst) const
+  /// \param scratch for the body's planes in the part's frame
+  Encounter meetPart(const BodySweep& body, std::size_t index, bool is_target, Planes& scratch) const
   {
+    Encounter met;
     const Part& part = parts[index];
     const Eigen::Vector3f around = Eigen::Vector3f::Constant(LOOK_AHEAD);
     if (!part.box_camera.intersects(Eigen::AlignedBox3f(body.box.min() - around, body.box.max() + around)))
-      return;
-    Encounter met;
-    met.distance = LOOK_AHEAD;
-    part.surface->deepest(inFrame(body.planes, part.T_camera_object), met.distance, met.contact);
-    if (met.distance >= LOOK_AHEAD)
-      return;
+      return met;
+    float distance = LOOK_AHEAD;
+    toFrame(part.T_camera_object, body.planes, scratch);
+    part.surface->deepest(scratch, distance, met.contact);
+    if (distance >= LOOK_AHEAD)
+      return met;
+    met.distance = distance;
     met.required = static_cast<float>(is_target ? parameters.target_clearance : parameters.part_clearance);
     met.kind = is_target ? ObstacleKind::Target : ObstacleKind::Part;
     met.index = static_cast<int>(index);
     met.contact = part.T_camera_object * met.contact;
-    keepWorse(worst, met);
+    return met;
   }
 
-  Encounter meet(const BodySweep& body, std::size_t target, bool target_counts) const
+  Encounter meetOthers(const BodySweep& body, std::size_t target, Planes& scratch) const
   {
     Encounter worst;
-    meetBin(body, worst);
-    if (target_counts)
-      meetPart(body, target, true, worst);
-    if (!worst.free())
-      return worst;
-    if (seen)
-      keepWorse(worst, seen->nearest(body, pixelsOf(parts[target])));
-    for (std::size_t i = 0; i < parts.size() && worst.free(); ++i)
+    for (std::size_t i = 0; i < parts.size(); ++i)
       if (i != target)
-        meetPart(body, i, false, worst);
+        keepWorse(worst, meetPart(body, i, false, scratch));
     return worst;
   }
 
@@ -171,8 +166,9 @@ struct Obstacles::Impl
   {
     const Part& held = parts[target];
     const TrainedModel& model = *held.placed.model;
-    const HeldPart way(model.field, *held.surface, static_cast<float>(model.parameters.surface_spacing),
-                       held.placed.T_camera_object, motion_camera, static_cast<float>(parameters.max_drag));
+    const auto spacing = static_cast<float>(model.parameters.surface_spacing);
+    const HeldPart way(model.field, *held.surface, spacing, held.placed.T_camera_object, motion_camera,
+                       static_cast<float>(parameters.max_drag));
     Encounter worst;
     for (std::size_t i = 0; i < sides.size(); ++i)
       way.meetSide(sides[i].box, sides[i].floor ? ObstacleKind::BinFloor : ObstacleKind::BinWall, static_cast<int>(i),
@@ -182,11 +178,13 @@ struct Obstacles::Impl
         way.meet(*parts[i].surface, parts[i].placed.T_camera_object, static_cast<int>(i), worst);
     if (seen && worst.free())
     {
-      const OwnPixels& own = pixelsOf(held);
-      seen->forEachPoint(way.corners(), [&](int u, int v, const Eigen::Vector3f& point) {
-        if (way.box().contains(point) && !own.at(u, v))
-          way.meet(point, ObstacleKind::Surface, -1, worst);
-      });
+      seen->forEachPoint(
+          way.corners(), [&](const Sphere& points) { return way.mayMeet(points); },
+          [&](int u, int v, const Eigen::Vector3f& point) {
+            if (way.box().contains(point))
+              way.meet(
+                  point, ObstacleKind::Surface, -1, [&] { return held.pixels->at(u, v); }, worst);
+          });
     }
     return worst;
   }
@@ -228,28 +226,39 @@ struct Obstacles::Impl
     return clearance;
   }
 
-  /// The worst of all pieces, up to the first that comes too near.
+  bool staysClearOfBin(const ToolWay& way, std::size_t piece) const
+  {
+    return isWellInside(way.piece(piece).shape, T_bin_camera * way.T_camera_tool0(),
+                        T_bin_camera.linear() * way.motion_camera(), *bin, binLookAhead());
+  }
+
+  /// Up to the first kind of obstacle to which a piece comes too near: what takes less time first, and parts before the
+  /// cloud that shows them, because they tell more.
+  void meetAll(ToolWay& way, std::size_t target, bool target_counts) const
+  {
+    Planes scratch;
+    if (bin &&
+        !way.meet([&](std::size_t i) { return staysClearOfBin(way, i) ? Encounter{} : meetBin(way.covered(i)); }))
+      return;
+    if (target_counts && !way.meet([&](std::size_t i) {
+          return way.piece(i).may_touch_target ? Encounter{} : meetPart(way.covered(i), target, true, scratch);
+        }))
+      return;
+    if (!way.meet([&](std::size_t i) { return meetOthers(way.covered(i), target, scratch); }))
+      return;
+    if (seen)
+      way.meet([&](std::size_t i) { return seen->nearest(way.covered(i), *parts[target].pixels); });
+  }
+
   Clearance sweep(const ToolShape& tool, const Pose& T_camera_tool0, const Eigen::Vector3d& motion_camera,
                   std::size_t target, bool target_counts) const
   {
     checkTarget(target);
     requireFinite(T_camera_tool0.matrix(), "The pose of tool0");
     requireFinite(motion_camera, "The motion of tool0");
-    Encounter worst;
-    const ToolPiece* of = nullptr;
-    for (const ToolPiece& piece : tool)
-    {
-      const BodySweep body(swept(transformed(piece.shape, T_camera_tool0), motion_camera));
-      const Encounter met = meet(body, target, target_counts && !piece.may_touch_target);
-      if (!(met.margin() >= worst.margin()))
-      {
-        worst = met;
-        of = &piece;
-      }
-      if (!worst.free())
-        break;
-    }
-    return inWords(worst, of ? of->body : "");
+    ToolWay way(tool, T_camera_tool0, motion_camera);
+    meetAll(way, target, target_counts);
+    return inWords(way.worst(), way.body());
   }
 };
 
@@ -262,6 +271,8 @@ Obstacles::Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<Plac
   if (bin)
   {
     requireFinite(*bin);
+    impl->bin = *bin;
+    impl->T_bin_camera = bin->T_camera_bin.inverse();
     impl->sides = binSides(*bin);
   }
   impl->parts = std::vector<Impl::Part>(parts.size());
@@ -280,14 +291,13 @@ Obstacles::Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<Plac
     if (i > 0)
       impl->surfaces.at(models[i - 1]) = std::make_unique<SurfaceBlocks>(surfaceOf(*models[i - 1]));
     else if (measured)
-      impl->seen.emplace(*measured, bin, parameters);
+      impl->seen.emplace(*measured, bin, parameters, executor);
   });
-  for (Impl::Part& part : impl->parts)
-    part.surface = impl->surfaces.at(part.placed.model).get();
   for (std::size_t i = 0; i < impl->parts.size(); ++i)
+  {
+    impl->parts[i].surface = impl->surfaces.at(impl->parts[i].placed.model).get();
     impl->preparePart(i);
-  if (impl->seen)
-    executor.forEach(SeenSpace::STEPS, [&](std::size_t i) { impl->seen->prepare(i); });
+  }
   impl_ = std::move(impl);
 }
 

@@ -54,6 +54,15 @@ double priorityShare(int priority, const PartDefinition& part)
   return range > 0 ? (static_cast<double>(priority) - lowest->priority) / range : 1.0;
 }
 
+/// Index of the grasp that this one repeats around an axis; its own if there is none.
+std::size_t writtenAs(std::size_t g, const std::vector<GraspDefinition>& grasps)
+{
+  const auto written = std::find_if(grasps.begin(), grasps.end(), [&](const GraspDefinition& other) {
+    return !grasps[g].copy_of.empty() && other.id == grasps[g].copy_of;
+  });
+  return written == grasps.end() ? g : static_cast<std::size_t>(written - grasps.begin());
+}
+
 bool usesTolerance(const GraspVariant& variant) { return variant.tilt != 0 || variant.spin != 0; }
 }  // namespace
 
@@ -63,6 +72,7 @@ PreparedPart preparePart(const PartDefinition& part, const Gripper& gripper, int
   for (const GraspDefinition& definition : part.grasps)
   {
     PreparedGrasp grasp;
+    grasp.as_written = writtenAs(prepared.grasps.size(), part.grasps);
     grasp.refusal = checkGripper(definition, gripper);
     grasp.T_tip_tool0 = flangeOf(definition.width, gripper);
     if (grasp.refusal.rejection == GraspRejection::None)
@@ -70,6 +80,8 @@ PreparedPart preparePart(const PartDefinition& part, const Gripper& gripper, int
       grasp.open = shapeAt(gripper, definition.opening);
       grasp.closing = closingShape(gripper, definition.opening, definition.width);
       grasp.closed = shapeAt(gripper, definition.width);
+      const Eigen::Vector3d along_tip(0, 0, definition.approach);
+      grasp.way_in = movedBy(grasp.open, grasp.T_tip_tool0.linear().transpose() * along_tip);
     }
     grasp.priority_share = priorityShare(definition.priority, part);
     prepared.grasps.push_back(std::move(grasp));

@@ -23,10 +23,13 @@ struct Refusal
 /// What is the same wherever a grasp's part lies.
 struct PreparedGrasp
 {
+  std::size_t as_written = 0;           ///< index of the grasp of which it is a copy around an axis, or its own
   Refusal refusal;                      ///< where the gripper cannot take it
   Pose T_tip_tool0 = Pose::Identity();  ///< when holding; not finite where the gripper does not have the width
-  ToolShape open, closing, closed;      ///< of the gripper on the way; empty where it cannot take it
-  double priority_share = 1;            ///< in the range of the part's priorities, [0, 1]
+  // The gripper's; empty where it cannot take it.
+  ToolShape open, closing, closed;
+  ToolShape way_in;           ///< what it covers from the pre-grasp to the grasp, in its frame at the pre-grasp
+  double priority_share = 1;  ///< in the range of the part's priorities, [0, 1]
 };
 
 /// The grasps of a part with one gripper.

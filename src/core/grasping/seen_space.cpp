@@ -8,14 +8,10 @@
 #include <cstring>
 #include <limits>
 
-#include "sweep_lanes.hpp"
-
 namespace bin_picking
 {
 namespace
 {
-static_assert(BLOCK == 8, "OwnPixels has a bit for each pixel of a row of a block");
-
 constexpr float FAR_AWAY = 1e4f;     // metres: free all along the ray; finite, so that products stay numbers
 constexpr float MIN_DEPTH = 0.05f;   // metres: what is nearer to the camera has no place in the picture
 constexpr double MAX_EXTENSION = 2;  // of the picture's size, to either side
@@ -24,9 +20,8 @@ int wholeBlocks(int pixels) { return (pixels + BLOCK - 1) / BLOCK * BLOCK; }
 
 /// Where the ray enters the inside of the bin, through its rim or behind a wall that hides it; 0 if the camera is in
 /// there, FAR_AWAY if the ray passes by.
-float depthAtRim(const Bin& bin, const Eigen::Vector3d& ray)
+float depthAtRim(const Bin& bin, const Pose& T_bin_camera, const Eigen::Vector3d& ray)
 {
-  const Pose T_bin_camera = bin.T_camera_bin.inverse();
   const Eigen::Array3d direction = T_bin_camera.linear() * ray;
   const Eigen::Array3d camera = T_bin_camera.translation();
   const Eigen::Array3d half = bin.inner_size.array() * Eigen::Array3d(0.5, 0.5, 1);
@@ -44,6 +39,39 @@ float depthAtRim(const Bin& bin, const Eigen::Vector3d& ray)
   return enters <= leaves ? static_cast<float>(enters) : FAR_AWAY;
 }
 
+/// Lines are worked on in bundles, each by one thread: task(first, end).
+template <typename Task>
+void forEachBundle(std::size_t count, const Executor& executor, const Task& task)
+{
+  constexpr std::size_t BUNDLE = 64;
+  executor.forEach((count + BUNDLE - 1) / BUNDLE,
+                   [&](std::size_t b) { task(b * BUNDLE, std::min(count, (b + 1) * BUNDLE)); });
+}
+template <typename Task>
+void forEachLine(std::size_t count, const Executor& executor, const Task& task)
+{
+  forEachBundle(count, executor, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i)
+      task(i);
+  });
+}
+
+/// Calls visit(k) for each k < count with a[k] != b[k]; there are few.
+template <typename Visit>
+void forEachDifference(const std::uint8_t* a, const std::uint8_t* b, std::size_t count, const Visit& visit)
+{
+  constexpr std::size_t AT_ONCE = 8;
+  for (std::size_t k = 0; k < count; k += AT_ONCE)
+  {
+    const std::size_t end = std::min(k + AT_ONCE, count);
+    if (std::memcmp(a + k, b + k, end - k) == 0)
+      continue;
+    for (std::size_t i = k; i < end; ++i)
+      if (a[i] != b[i])
+        visit(i);
+  }
+}
+
 std::vector<Eigen::Vector3d> cornersOf(const Bin& bin)
 {
   std::vector<Eigen::Vector3d> corners;
@@ -55,26 +83,29 @@ std::vector<Eigen::Vector3d> cornersOf(const Bin& bin)
 }
 }  // namespace
 
-SeenSpace::SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstacleParameters& parameters)
+SeenSpace::SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstacleParameters& parameters,
+                     const Executor& executor)
     : surface_clearance_(static_cast<float>(parameters.surface_clearance)),
       unseen_entry_(static_cast<float>(parameters.unseen_entry)),
       shadow_entry_(static_cast<float>(parameters.shadow_entry))
 {
-  extendTo(measured, bin);
-  bridgeGaps(measured, bin);
+  layOut(measured, bin);
+  bridgeGaps(measured, executor);
+  if (bin)
+    forEachLine(static_cast<std::size_t>(height_), executor,
+                [&](std::size_t v) { hideBin(*bin, static_cast<int>(v)); });
+  constexpr std::size_t STEPS = 3;
+  executor.forEach(STEPS, [&](std::size_t step) {
+    if (step == 0)
+      allowed_ = allowedDepth(unseen_entry_);
+    else if (step == 1)
+      allowed_own_ = allowedDepth(shadow_entry_);
+    else
+      boundBlocks();
+  });
 }
 
-void SeenSpace::prepare(std::size_t step)
-{
-  if (step == 0)
-    allowed_own_ = allowedDepth(shadow_entry_);
-  else
-    allowed_ = allowedDepth(unseen_entry_);
-  if (step == 1)
-    findBlockMinima();
-}
-
-void SeenSpace::extendTo(const DepthGrid& measured, const Bin* bin)
+void SeenSpace::layOut(const DepthGrid& measured, const Bin* bin)
 {
   const PinholeCamera& camera = measured.camera;
   Eigen::AlignedBox2d picture(Eigen::Vector2d::Zero(), Eigen::Vector2d(measured.width, measured.height));
@@ -99,44 +130,106 @@ void SeenSpace::extendTo(const DepthGrid& measured, const Bin* bin)
   depth_.assign(pixels, FAR_AWAY);
   measured_.assign(pixels, 0);
   hidden_by_.assign(pixels, -1);
-  for (int v = 0; v < measured.height; ++v)
-    for (int u = 0; u < measured.width; ++u)
-      if (measured.valid(measured.index(u, v)))
-      {
-        depth_[index(left_ + u, top_ + v)] = measured.z[static_cast<std::size_t>(measured.index(u, v))];
-        measured_[index(left_ + u, top_ + v)] = 1;
-      }
 }
 
-void SeenSpace::bridgeGaps(const DepthGrid& measured, const Bin* bin)
+void SeenSpace::copyRow(const DepthGrid& measured, int v)
 {
-  // Of each row and column the first and the last measured pixel; on the way, what lies between two is bridged.
-  std::vector<Ends> columns(static_cast<std::size_t>(measured.width));
-  std::vector<Ends> rows(static_cast<std::size_t>(measured.height));
-  for (int v = 0; v < measured.height; ++v)
-    for (int u = 0; u < measured.width; ++u)
-    {
-      const std::size_t i = index(left_ + u, top_ + v);
-      if (measured_[i] == 0)
-        continue;
-      bridgeTo(i, 1, rows[static_cast<std::size_t>(v)]);
-      bridgeTo(i, static_cast<std::size_t>(stride_), columns[static_cast<std::size_t>(u)]);
-    }
-  for (int v = 0; v < measured.height; ++v)
-    for (int u = 0; u < measured.width; ++u)
-    {
-      const std::size_t i = index(left_ + u, top_ + v);
-      if (depth_[i] == FAR_AWAY)
-        for (const Ends& ends : {rows[static_cast<std::size_t>(v)], columns[static_cast<std::size_t>(u)]})
-          if (ends.any)
-            offer(i, depth_[i < ends.first ? ends.first : ends.last], i < ends.first ? ends.first : ends.last);
-    }
-  if (!bin)
+  const float* z = &measured.z[static_cast<std::size_t>(measured.index(0, v))];
+  float* depth = &depth_[index(left_, top_ + v)];
+  std::uint8_t* known = &measured_[index(left_, top_ + v)];
+  for (int u = 0; u < measured.width; ++u)
+  {
+    known[u] = std::isnan(z[u]) ? std::uint8_t{0} : std::uint8_t{1};
+    depth[u] = std::isnan(z[u]) ? FAR_AWAY : z[u];
+  }
+}
+
+/// Along rows and columns; where both bridge, the nearer counts.
+void SeenSpace::bridgeGaps(const DepthGrid& measured, const Executor& executor)
+{
+  const auto width = static_cast<std::size_t>(measured.width);
+  const auto height = static_cast<std::size_t>(measured.height);
+  const auto stride = static_cast<std::size_t>(stride_);
+  if (width == 0 || height == 0)
     return;
-  for (int v = 0; v < height_; ++v)
-    for (int u = 0; u < width_; ++u)
-      if (depth_[index(u, v)] == FAR_AWAY)
-        depth_[index(u, v)] = depthAtRim(*bin, ray(u, v).cast<double>());
+  const auto row = [&](std::size_t v) { return Line{index(left_, top_ + static_cast<int>(v)), 1, width}; };
+  const auto column = [&](std::size_t u) { return Line{index(left_ + static_cast<int>(u), top_), stride, height}; };
+  std::vector<Ends> rows(height);
+  std::vector<Ends> columns(width);
+  forEachLine(height, executor, [&](std::size_t v) {
+    copyRow(measured, static_cast<int>(v));
+    const std::size_t begin = row(v).begin;
+    if (measured_[begin] != 0)
+      change(rows[v], begin, 1);
+    forEachDifference(&measured_[begin + 1], &measured_[begin], width - 1,
+                      [&](std::size_t k) { change(rows[v], begin + 1 + k, 1); });
+    if (measured_[begin + width - 1] != 0)
+      rows[v].last = begin + width - 1;
+  });
+  forEachBundle(width, executor, [&](std::size_t first, std::size_t end) {
+    for (std::size_t u = first; u < end; ++u)
+      if (measured_[row(0).begin + u] != 0)
+        change(columns[u], row(0).begin + u, stride);
+    for (std::size_t v = 1; v < height; ++v)
+      forEachDifference(&measured_[row(v).begin + first], &measured_[row(v - 1).begin + first], end - first,
+                        [&](std::size_t k) { change(columns[first + k], row(v).begin + first + k, stride); });
+    for (std::size_t u = first; u < end; ++u)
+      if (measured_[row(height - 1).begin + u] != 0)
+        columns[u].last = row(height - 1).begin + u;
+  });
+  forEachLine(height, executor, [&](std::size_t v) { goOnBeyond(rows[v], row(v), columns); });
+  forEachLine(width, executor, [&](std::size_t u) { goOnBeyond(columns[u], column(u), rows); });
+}
+
+/// At the first pixel of a line, or where it changes between measured and not.
+void SeenSpace::change(Ends& ends, std::size_t pixel, std::size_t step)
+{
+  if (measured_[pixel] == 0)
+    ends.last = pixel - step;
+  else if (ends.any)
+    bridge(ends.last, pixel, step);
+  else
+    ends = {true, pixel, pixel};
+}
+
+/// A straight line between two measured pixels.
+void SeenSpace::bridge(std::size_t begin, std::size_t end, std::size_t step)
+{
+  const std::size_t count = (end - begin) / step;
+  const float a = depth_[begin];
+  const float b = depth_[end];
+  for (std::size_t k = 1; k < count; ++k)
+  {
+    // Along a straight line in space the inverse of the depth is linear in the picture.
+    const float share = static_cast<float>(k) / static_cast<float>(count);
+    offer(begin + k * step, a * b / (b + share * (a - b)), a < b ? begin : end);
+  }
+}
+
+/// Before the first measured pixel of a row or column, and after the last, its depth goes on where nothing bridges.
+/// \param crossing what crosses the line, pixel by pixel
+void SeenSpace::goOnBeyond(const Ends& ends, const Line& line, const std::vector<Ends>& crossing)
+{
+  if (!ends.any)
+    return;
+  const auto goOn = [&](std::size_t k, std::size_t from) {
+    const std::size_t i = line.begin + k * line.step;
+    if (!crossing[k].any || i < crossing[k].first || i > crossing[k].last)
+      offer(i, depth_[from], from);
+  };
+  for (std::size_t k = 0; k < (ends.first - line.begin) / line.step; ++k)
+    goOn(k, ends.first);
+  for (std::size_t k = (ends.last - line.begin) / line.step + 1; k < line.count; ++k)
+    goOn(k, ends.last);
+}
+
+/// Of a row: the inside of the bin is unknown where the picture does not show it.
+void SeenSpace::hideBin(const Bin& bin, int v)
+{
+  const Pose T_bin_camera = bin.T_camera_bin.inverse();
+  for (int u = 0; u < width_; ++u)
+    if (depth_[index(u, v)] == FAR_AWAY)
+      depth_[index(u, v)] = depthAtRim(bin, T_bin_camera, ray(u, v).cast<double>());
 }
 
 /// The nearer of what is said of a pixel remains.
@@ -146,22 +239,6 @@ void SeenSpace::offer(std::size_t pixel, float depth, std::size_t hidden_by)
     return;
   depth_[pixel] = depth;
   hidden_by_[pixel] = static_cast<std::int32_t>(hidden_by);
-}
-
-/// A straight line from the last measured pixel of a row or column to the next.
-void SeenSpace::bridgeTo(std::size_t next, std::size_t step, Ends& ends)
-{
-  const std::size_t last = ends.any ? ends.last : next;
-  const std::size_t count = (next - last) / step;
-  const float a = depth_[last];
-  const float b = depth_[next];
-  for (std::size_t k = 1; k < count; ++k)
-  {
-    // Along a straight line in space the inverse of the depth is linear in the picture.
-    const float share = static_cast<float>(k) / static_cast<float>(count);
-    offer(last + k * step, a * b / (b + share * (a - b)), a < b ? last : next);
-  }
-  ends = {true, ends.any ? ends.first : next, next};
 }
 
 /// The largest depth within `entry` along rows and columns, and `entry` more: how far a body may go that may be off the
@@ -198,17 +275,41 @@ std::vector<float> SeenSpace::allowedDepth(float entry) const
   return allowed;
 }
 
-void SeenSpace::findBlockMinima()
+void SeenSpace::boundBlocks()
 {
-  const int across = stride_ / BLOCK;
-  const int down = static_cast<int>(depth_.size()) / stride_ / BLOCK;
-  block_nearest_.assign(static_cast<std::size_t>(across * down), FAR_AWAY);
-  for (int v = 0; v < down * BLOCK; ++v)
-    for (int u = 0; u < stride_; ++u)
+  const std::size_t blocks = depth_.size() / (BLOCK * BLOCK);
+  block_nearest_.assign(blocks + BLOCK, FAR_AWAY);  // BLOCK of them are read at once
+  block_points_.assign(blocks, Sphere{});
+  for (int v = 0; v < static_cast<int>(depth_.size()) / stride_; v += BLOCK)
+    for (int u = 0; u < stride_; u += BLOCK)
     {
-      float& nearest = block_nearest_[static_cast<std::size_t>(v / BLOCK * across + u / BLOCK)];
-      nearest = std::min(nearest, depth_[index(u, v)]);
+      float nearest = FAR_AWAY;
+      float nearest_point = FAR_AWAY;
+      float farthest_point = 0;
+      for (int row = 0; row < BLOCK; ++row)
+        for (std::size_t i = index(u, v + row); i < index(u + BLOCK, v + row); ++i)
+        {
+          nearest = std::min(nearest, depth_[i]);
+          nearest_point = std::min(nearest_point, measured_[i] != 0 ? depth_[i] : FAR_AWAY);
+          farthest_point = std::max(farthest_point, measured_[i] != 0 ? depth_[i] : 0.0f);
+        }
+      block_nearest_[blockOf(u, v)] = nearest;
+      block_points_[blockOf(u, v)] = aroundPoints(u, v, nearest_point, farthest_point);
     }
+}
+
+/// Around the corners of the block at the nearest and the farthest depth; where the nearest is the farther: nothing.
+Sphere SeenSpace::aroundPoints(int u, int v, float nearest, float farthest) const
+{
+  if (nearest > farthest)
+    return {Eigen::Vector3f::Zero(), -1};
+  Eigen::AlignedBox3f box;
+  for (const float depth : {nearest, farthest})
+  {
+    box.extend(Eigen::Vector3f(depth * ray(u, v)));
+    box.extend(Eigen::Vector3f(depth * ray(u + BLOCK - 1, v + BLOCK - 1)));
+  }
+  return {box.center(), 0.5f * box.diagonal().norm()};
 }
 
 template <typename Points>
@@ -235,132 +336,99 @@ SeenSpace::Window SeenSpace::windowOf(const Points& points, float margin) const
           std::min(height_, cut(std::ceil(window.max().y()), height_) + 1)};
 }
 
-OwnPixels SeenSpace::ownPixels(const DistanceField& field, const Eigen::AlignedBox3f& box_object,
-                               const Pose& T_camera_object, float tolerance) const
-{
-  const std::vector<Eigen::Vector3f> corners = cornersOf(box_object, Eigen::Isometry3f(T_camera_object.cast<float>()));
-  const auto [front, back] = std::minmax_element(
-      corners.begin(), corners.end(), [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return a.z() < b.z(); });
-  const float nearest = front->z() - tolerance;
-  const float farthest = back->z() + tolerance;
-  // From pixels to rays in the part's frame, since each is only asked once.
-  const Eigen::Isometry3f T_object(T_camera_object.inverse().cast<float>());
-  const Eigen::Vector3f camera = T_object.translation();
-  const Eigen::Vector3f right = T_object.linear().col(0) * step_.x();
-  const Eigen::Vector3f down = T_object.linear().col(1) * step_.y();
-  const Eigen::Vector3f corner = T_object.linear() * ray(0, 0);
-  const auto isOwn = [&](std::size_t i, int u, int v) {
-    const float depth = depth_[i];
-    if (depth < nearest || depth > farthest)
-      return false;
-    const Eigen::Vector3f ray_object = corner + static_cast<float>(u) * right + static_cast<float>(v) * down;
-    return std::abs(field.at(camera + depth * ray_object)) <= tolerance;
-  };
-  const Window w = windowOf(corners, tolerance);
-  OwnPixels own(w.left, w.top, w.right, w.bottom);
-  for (int v = w.top; v < w.bottom; ++v)
-    for (int u = w.left; u < w.right; ++u)
-      if (measured_[index(u, v)] != 0 && isOwn(index(u, v), u, v))
-        own.set(u, v);
-  // Of what is hidden, many pixels have the same end of a bridge: most of these are known by now.
-  for (int v = w.top; v < w.bottom; ++v)
-    for (int u = w.left; u < w.right; ++u)
-    {
-      const std::int32_t end = hidden_by_[index(u, v)];
-      if (end < 0)
-        continue;
-      const int x = end % stride_;
-      const int y = end / stride_;
-      const bool inside = x >= w.left && x < w.right && y >= w.top && y < w.bottom;
-      if (inside ? own.at(x, y) : isOwn(static_cast<std::size_t>(end), x, y))
-        own.set(u, v);
-    }
-  return own;
-}
-
-/// Whether the body, LOOK_AHEAD larger, reaches as far as `nearest` on any ray of a block. By the block's corners:
-/// along a line in the picture the inverse depth of a plane is linear.
-bool SeenSpace::mayMeet(const Planes& planes, int u, int v, float nearest) const
-{
-  const std::array<Eigen::Vector3f, 4> rays = {ray(u, v), ray(u + BLOCK - 1, v), ray(u, v + BLOCK - 1),
-                                               ray(u + BLOCK - 1, v + BLOCK - 1)};
-  float leaves = FAR_AWAY;
-  float enters = 0;
-  for (const Eigen::Vector4f& plane : planes)
-  {
-    const Eigen::Vector3f n = plane.head<3>();
-    const Eigen::Array4f along(n.dot(rays[0]), n.dot(rays[1]), n.dot(rays[2]), n.dot(rays[3]));
-    const float offset = LOOK_AHEAD - plane.w();
-    if (along.minCoeff() > 0)
-      leaves = std::min(leaves, offset > 0 ? offset / along.minCoeff() : offset / along.maxCoeff());
-    else if (along.maxCoeff() < 0)
-      enters = std::max(enters, offset > 0 ? 0.0f : offset / along.minCoeff());
-  }
-  return leaves >= nearest && enters <= leaves;
-}
-
 struct SeenSpace::Search
 {
   const SeenSpace& space;
   const BodySweep& body;
   const OwnPixels& target;
+  /// For whichever pixels the less is allowed: few blocks have to be looked at more closely.
+  const std::vector<float>& least_allowed;
   Encounter surface;
   Encounter unseen;
 
   void block(int u, int v)
   {
-    if (!space.mayMeet(body.planes, u, v,
-                       space.block_nearest_[static_cast<std::size_t>(v / BLOCK * (space.stride_ / BLOCK) + u / BLOCK)]))
-      return;
     Lanes lanes;
-    std::array<std::uint8_t, BLOCK> own;
     for (int row = 0; row < BLOCK; ++row)
-      own[static_cast<std::size_t>(row)] = fill(lanes, row, u, v + row);
+    {
+      const std::size_t first = space.index(u, v + row);
+      std::memcpy(lanes.depth[row], &space.depth_[first], sizeof(lanes.depth[row]));
+      std::memcpy(lanes.allowed[row], &least_allowed[first], sizeof(lanes.allowed[row]));
+    }
     const unsigned rows = meet(body.planes, space.ray(u, v), space.step_, LOOK_AHEAD, lanes);
     for (int row = 0; row < BLOCK; ++row)
-      if (rows >> row & 1)
-        keep(lanes, row, own[static_cast<std::size_t>(row)], u, v + row);
+      for (int k = 0; rows >> row & 1 && k < BLOCK; ++k)
+        keep(lanes.distance[row][k], lanes.allowed[row][k], lanes.beyond[row][k], u + k, v + row);
   }
 
-  /// \return the target's own pixels
-  std::uint8_t fill(Lanes& lanes, int row, int u, int v) const
+  void keep(float distance, float allowed, float beyond, int u, int v)
   {
-    const std::size_t first = space.index(u, v);
-    const std::uint8_t own = target.inBlock(u / BLOCK, v);
-    std::memcpy(lanes.depth[row], &space.depth_[first], sizeof(lanes.depth[row]));
-    std::memcpy(lanes.allowed[row], &space.allowed_[first], sizeof(lanes.allowed[row]));
-    for (int k = 0; own != 0 && k < BLOCK; ++k)
-      if (own >> k & 1)
-        lanes.allowed[row][k] = space.allowed_own_[first + static_cast<std::size_t>(k)];
-    return own;
-  }
-
-  void keep(const Lanes& lanes, int row, std::uint8_t own, int u, int v)
-  {
-    const std::size_t first = space.index(u, v);
-    for (int k = 0; k < BLOCK; ++k)
-    {
-      const float beyond = lanes.beyond[row][k];
-      const float distance = lanes.distance[row][k];
-      if (beyond > 0)
-        keepWorse(unseen,
-                  {-beyond, 0, ObstacleKind::Unknown, -1, (lanes.allowed[row][k] + beyond) * space.ray(u + k, v)});
-      if (distance < LOOK_AHEAD && space.measured_[first + static_cast<std::size_t>(k)] != 0 && !(own >> k & 1))
-        keepWorse(surface, {distance, space.surface_clearance_, ObstacleKind::Surface, -1, space.pointAt(u + k, v)});
-    }
+    const std::size_t i = space.index(u, v);
+    const bool is_near =
+        distance < LOOK_AHEAD && space.measured_[i] != 0 && !(distance - space.surface_clearance_ >= surface.margin());
+    const bool is_beyond = beyond > 0 && !(-beyond >= unseen.margin());
+    if (!is_near && !is_beyond)
+      return;
+    const bool own = target.at(u, v);
+    if (is_near && !own)
+      keepWorse(surface, {distance, space.surface_clearance_, ObstacleKind::Surface, -1, space.pointAt(u, v)});
+    const float reaches = allowed + beyond;
+    const float farther = reaches - (own ? space.allowed_own_ : space.allowed_)[i];
+    if (is_beyond && farther > 0)
+      keepWorse(unseen, {-farther, 0, ObstacleKind::Unknown, -1, reaches * space.ray(u, v)});
   }
 };
 
 Encounter SeenSpace::nearest(const BodySweep& body, const OwnPixels& target) const
 {
-  Search search{*this, body, target, {}, {}};
+  Search search{*this, body, target, unseen_entry_ < shadow_entry_ ? allowed_ : allowed_own_, {}, {}};
   const Window w = windowOf(body.shape.vertices, LOOK_AHEAD);
-  const float deepest = body.box.max().z() + LOOK_AHEAD;
   for (int v = w.top / BLOCK * BLOCK; v < w.bottom; v += BLOCK)
-    for (int u = w.left / BLOCK * BLOCK; u < w.right; u += BLOCK)
-      if (block_nearest_[static_cast<std::size_t>(v / BLOCK * (stride_ / BLOCK) + u / BLOCK)] <= deepest)
-        search.block(u, v);
+    for (int u = w.left / BLOCK * BLOCK; u < w.right; u += BLOCK * BLOCK)
+    {
+      const unsigned blocks = mayMeet(body.planes, ray(u, v), step_, LOOK_AHEAD, &block_nearest_[blockOf(u, v)]);
+      for (int k = 0; blocks >> k != 0 && u + k * BLOCK < w.right; ++k)
+        if (blocks >> k & 1)
+          search.block(u + k * BLOCK, v);
+    }
   // What was measured explains more than what was not, whose depth along the ray cannot be compared.
   return search.surface.free() && search.unseen.margin() < search.surface.margin() ? search.unseen : search.surface;
+}
+
+OwnPixels::OwnPixels(const SeenSpace& space, const DistanceField& field, const Eigen::AlignedBox3f& box_object,
+                     const Pose& T_camera_object, float tolerance)
+    : space_(space), field_(field), tolerance_(tolerance)
+{
+  const std::vector<Eigen::Vector3f> corners = cornersOf(box_object, Eigen::Isometry3f(T_camera_object.cast<float>()));
+  const auto [front, back] = std::minmax_element(
+      corners.begin(), corners.end(), [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return a.z() < b.z(); });
+  nearest_ = front->z() - tolerance;
+  farthest_ = back->z() + tolerance;
+  window_ = space.windowOf(corners, tolerance);
+  const Eigen::Isometry3f T_object(T_camera_object.inverse().cast<float>());
+  camera_ = T_object.translation();
+  right_ = T_object.linear().col(0) * space.step_.x();
+  down_ = T_object.linear().col(1) * space.step_.y();
+  corner_ = T_object.linear() * space.ray(0, 0);
+}
+
+bool OwnPixels::at(int u, int v) const
+{
+  if (!window_.contains(u, v))
+    return false;
+  const std::size_t pixel = space_.index(u, v);
+  if (space_.measured_[pixel] != 0)
+    return isOnSurface(pixel, u, v);
+  const std::int32_t end = space_.hidden_by_[pixel];
+  return end >= 0 && isOnSurface(static_cast<std::size_t>(end), end % space_.stride_, end / space_.stride_);
+}
+
+bool OwnPixels::isOnSurface(std::size_t pixel, int u, int v) const
+{
+  const float depth = space_.depth_[pixel];
+  if (depth < nearest_ || depth > farthest_)
+    return false;
+  const Eigen::Vector3f ray = corner_ + static_cast<float>(u) * right_ + static_cast<float>(v) * down_;
+  return std::abs(field_.at(camera_ + depth * ray)) <= tolerance_;
 }
 }  // namespace bin_picking

@@ -6,86 +6,47 @@
 #include <cstdint>
 #include <vector>
 
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/model/distance_field.hpp"
 #include "body_sweep.hpp"
+#include "sweep_lanes.hpp"
 
 namespace bin_picking
 {
-/// The pixels of a part: those whose measured point lies on its surface, and gaps that it alone hides. By blocks of
-/// eight pixels of a row, a bit for each.
-class OwnPixels
-{
-public:
-  OwnPixels() = default;
-  /// None yet, of those in a rectangle.
-  OwnPixels(int left, int top, int right, int bottom)
-      : left_(left / 8), top_(top), width_(std::max(0, (right + 7) / 8 - left_)), height_(std::max(0, bottom - top))
-  {
-    bits_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0);
-  }
-
-  /// In the rectangle.
-  void set(int u, int v)
-  {
-    std::uint8_t& bits = bits_[index(u / 8, v)];
-    bits = static_cast<std::uint8_t>(bits | 1u << u % 8);
-  }
-
-  bool at(int u, int v) const { return (inBlock(u / 8, v) >> u % 8 & 1) != 0; }
-
-  /// \param block of eight columns, from the picture's left edge
-  std::uint8_t inBlock(int block, int v) const
-  {
-    const bool inside = block >= left_ && block < left_ + width_ && v >= top_ && v < top_ + height_;
-    return inside ? bits_[index(block, v)] : std::uint8_t{0};
-  }
-
-private:
-  std::size_t index(int block, int v) const
-  {
-    return static_cast<std::size_t>(v - top_) * static_cast<std::size_t>(width_) +
-           static_cast<std::size_t>(block - left_);
-  }
-
-  int left_ = 0;  ///< in blocks, as the width
-  int top_ = 0;
-  int width_ = 0;
-  int height_ = 0;
-  std::vector<std::uint8_t> bits_;
-};
+class OwnPixels;
 
 /// What the camera saw: per pixel's ray how far it is free. In the camera's own frame, so that each ray is exact and no
-/// shadow is cut by a grid of other axes.
+/// shadow is cut by a grid of other axes. Immutable.
 class SeenSpace
 {
 public:
-  SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstacleParameters& parameters);
-
-  /// The rest of the making: steps 0 to STEPS - 1, which may run at once, before nearest() is asked.
-  static constexpr std::size_t STEPS = 2;
-  void prepare(std::size_t step);
-
-  OwnPixels ownPixels(const DistanceField& field, const Eigen::AlignedBox3f& box_object, const Pose& T_camera_object,
-                      float tolerance) const;
+  SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstacleParameters& parameters, const Executor& executor);
 
   /// The worst of measured points that are not the target's, and of unseen space.
   Encounter nearest(const BodySweep& body, const OwnPixels& target) const;
 
-  /// Calls visit(u, v, point) for each measured point in a rectangle that encloses the hull of some (camera frame).
-  template <typename Visit>
-  void forEachPoint(const std::vector<Eigen::Vector3f>& hull, const Visit& visit) const
+  /// Calls visit(u, v, point) for the measured points in a rectangle that encloses the hull of some (camera frame), but
+  /// for those whose block is passed over: mayConcern(sphere), which encloses its points.
+  template <typename MayConcern, typename Visit>
+  void forEachPoint(const std::vector<Eigen::Vector3f>& hull, const MayConcern& mayConcern, const Visit& visit) const
   {
     const Window w = windowOf(hull, 0);
-    for (int v = w.top; v < w.bottom; ++v)
-      for (int u = w.left; u < w.right; ++u)
-        if (measured_[index(u, v)] != 0)
-          visit(u, v, pointAt(u, v));
+    for (int v = w.top / BLOCK * BLOCK; v < w.bottom; v += BLOCK)
+      for (int u = w.left / BLOCK * BLOCK; u < w.right; u += BLOCK)
+        if (const Sphere& points = block_points_[blockOf(u, v)]; !(points.radius < 0) && mayConcern(points))
+          forEachPointOf(
+              {std::max(u, w.left), std::max(v, w.top), std::min(u + BLOCK, w.right), std::min(v + BLOCK, w.bottom)},
+              visit);
   }
 
 private:
+  friend class OwnPixels;
+
   struct Window
   {
     int left, top, right, bottom;
+
+    bool contains(int u, int v) const { return u >= left && u < right && v >= top && v < bottom; }
   };
   /// First and last measured pixel of a row or a column.
   struct Ends
@@ -94,10 +55,21 @@ private:
     std::size_t first = 0;
     std::size_t last = 0;
   };
+  /// A row or a column of the picture: its first pixel, and from each to the next.
+  struct Line
+  {
+    std::size_t begin;
+    std::size_t step;
+    std::size_t count;
+  };
   /// Where a body may meet something in a block of pixels, row by row.
   struct Search;
 
   std::size_t index(int u, int v) const { return static_cast<std::size_t>(v * stride_ + u); }
+  std::size_t blockOf(int u, int v) const
+  {
+    return static_cast<std::size_t>(v / BLOCK * (stride_ / BLOCK) + u / BLOCK);
+  }
   Eigen::Vector3f ray(int u, int v) const
   {
     return {(static_cast<float>(u) - cx_) * step_.x(), (static_cast<float>(v) - cy_) * step_.y(), 1.0f};
@@ -105,13 +77,26 @@ private:
   Eigen::Vector3f pointAt(int u, int v) const { return depth_[index(u, v)] * ray(u, v); }
   template <typename Points>
   Window windowOf(const Points& points, float margin) const;
-  bool mayMeet(const Planes& planes, int u, int v, float nearest) const;
-  void extendTo(const DepthGrid& measured, const Bin* bin);
-  void bridgeGaps(const DepthGrid& measured, const Bin* bin);
-  void bridgeTo(std::size_t next, std::size_t step, Ends& ends);
+  template <typename Visit>
+  void forEachPointOf(const Window& w, const Visit& visit) const
+  {
+    for (int v = w.top; v < w.bottom; ++v)
+      for (int u = w.left; u < w.right; ++u)
+        if (measured_[index(u, v)] != 0)
+          visit(u, v, pointAt(u, v));
+  }
+
+  void layOut(const DepthGrid& measured, const Bin* bin);
+  void copyRow(const DepthGrid& measured, int v);
+  void bridgeGaps(const DepthGrid& measured, const Executor& executor);
+  void change(Ends& ends, std::size_t pixel, std::size_t step);
+  void bridge(std::size_t begin, std::size_t end, std::size_t step);
+  void goOnBeyond(const Ends& ends, const Line& line, const std::vector<Ends>& crossing);
   void offer(std::size_t pixel, float depth, std::size_t hidden_by);
+  void hideBin(const Bin& bin, int v);
   std::vector<float> allowedDepth(float entry) const;
-  void findBlockMinima();
+  void boundBlocks();
+  Sphere aroundPoints(int u, int v, float nearest, float farthest) const;
 
   int width_ = 0;  ///< of the picture, extended to where the bin may be
   int height_ = 0;
@@ -127,8 +112,33 @@ private:
   std::vector<float> allowed_;        ///< how far a body may go along the ray
   std::vector<float> allowed_own_;    ///< the same for pixels of the target
   std::vector<float> block_nearest_;  ///< smallest depth of each block of pixels
+  std::vector<Sphere> block_points_;  ///< around the measured points of each block; radius < 0: none
   float surface_clearance_ = 0;
   float unseen_entry_ = 0;
   float shadow_entry_ = 0;
+};
+
+/// The pixels of a part: those whose measured point lies on its surface, and gaps that it alone hides. Told pixel by
+/// pixel when asked, since few are.
+class OwnPixels
+{
+public:
+  /// \param space, field must outlive it \param tolerance less than the field's band, metres
+  OwnPixels(const SeenSpace& space, const DistanceField& field, const Eigen::AlignedBox3f& box_object,
+            const Pose& T_camera_object, float tolerance);
+
+  bool at(int u, int v) const;
+
+private:
+  bool isOnSurface(std::size_t pixel, int u, int v) const;
+
+  const SeenSpace& space_;
+  const DistanceField& field_;
+  float tolerance_;
+  SeenSpace::Window window_;
+  float nearest_;  ///< depths between which the part lies, metres
+  float farthest_;
+  // From pixels to rays in the part's frame.
+  Eigen::Vector3f camera_, corner_, right_, down_;
 };
 }  // namespace bin_picking

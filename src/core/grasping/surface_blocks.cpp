@@ -3,6 +3,7 @@
 #include "surface_blocks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "sweep_lanes.hpp"
@@ -13,18 +14,16 @@ namespace
 {
 // Cells along the longest edge: some dozen points per block of a part with a few thousand.
 constexpr float CELLS = 12;
-}  // namespace
+constexpr float PATCH = 0.004f;  // metres
 
-SurfaceBlocks::SurfaceBlocks(const std::vector<Eigen::Vector3f>& points)
+/// The points of each cell of a grid that holds any.
+template <typename Visit>
+void forEachCell(const std::vector<Eigen::Vector3f>& points, const Eigen::AlignedBox3f& box, float cell,
+                 const Visit& visit)
 {
-  for (const Eigen::Vector3f& p : points)
-    box_.extend(p);
-  if (points.empty())
-    return;
-  const float cell = std::max(box_.sizes().maxCoeff() / CELLS, 1e-4f);
-  const Eigen::Array3i cells = (box_.sizes().array() / cell).cast<int>() + 1;
+  const Eigen::Array3i cells = (box.sizes().array() / cell).cast<int>() + 1;
   const auto cellOf = [&](const Eigen::Vector3f& p) {
-    const Eigen::Array3i i = ((p - box_.min()).array() / cell).cast<int>();
+    const Eigen::Array3i i = ((p - box.min()).array() / cell).cast<int>();
     return static_cast<std::size_t>((i.z() * cells.y() + i.y()) * cells.x() + i.x());
   };
   std::vector<std::size_t> begin(static_cast<std::size_t>(cells.prod()) + 1, 0);
@@ -36,25 +35,42 @@ SurfaceBlocks::SurfaceBlocks(const std::vector<Eigen::Vector3f>& points)
   std::vector<Eigen::Vector3f> by_cell(points.size());
   for (const Eigen::Vector3f& p : points)
     by_cell[next[cellOf(p)]++] = p;
-
   for (std::size_t i = 0; i + 1 < begin.size(); ++i)
     if (begin[i] < begin[i + 1])
-      addBlock(&by_cell[begin[i]], begin[i + 1] - begin[i]);
+      visit(&by_cell[begin[i]], begin[i + 1] - begin[i]);
+}
+
+Sphere around(const Eigen::Vector3f* points, std::size_t count)
+{
+  Eigen::AlignedBox3f box;
+  for (std::size_t k = 0; k < count; ++k)
+    box.extend(points[k]);
+  return {box.center(), 0.5f * box.diagonal().norm()};
+}
+}  // namespace
+
+SurfaceBlocks::SurfaceBlocks(const std::vector<Eigen::Vector3f>& points)
+{
+  for (const Eigen::Vector3f& p : points)
+    box_.extend(p);
+  if (points.empty())
+    return;
+  const float longest = box_.sizes().maxCoeff();
+  forEachCell(points, box_, std::max(longest / CELLS, 1e-4f),
+              [&](const Eigen::Vector3f* first, std::size_t count) { addBlock(first, count); });
   centers_.fillUp();
+  forEachCell(points, box_, std::max(PATCH, longest / 100),
+              [&](const Eigen::Vector3f* first, std::size_t count) { patches_.push_back(around(first, count)); });
 }
 
 void SurfaceBlocks::addBlock(const Eigen::Vector3f* points, std::size_t count)
 {
-  Eigen::AlignedBox3f box;
   const std::size_t begin = points_.x.size();
   for (std::size_t k = 0; k < count; ++k)
-  {
-    box.extend(points[k]);
     points_.add(points[k]);
-  }
   points_.fillUp();
-  blocks_.push_back({box.center(), 0.5f * box.diagonal().norm(), begin, begin + count});
-  centers_.add(box.center());
+  blocks_.push_back({around(points, count), begin, begin + count});
+  centers_.add(blocks_.back().around.center);
 }
 
 void SurfaceBlocks::Coordinates::add(const Eigen::Vector3f& p)
@@ -70,32 +86,45 @@ void SurfaceBlocks::Coordinates::fillUp()
     add((*this)[x.size() - 1]);
 }
 
-void SurfaceBlocks::Coordinates::distancesFrom(const Planes& planes, std::size_t begin, std::size_t end,
-                                               std::vector<float>& distances) const
+/// Whether one of the body's faces keeps it apart from the box of all points.
+bool SurfaceBlocks::isApart(const Planes& planes, float distance) const
 {
-  distances.resize((end - begin + BLOCK - 1) / BLOCK * BLOCK);
-  signedDistances(planes, &x[begin], &y[begin], &z[begin], distances.size(), distances.data());
+  const Eigen::Vector3f middle = box_.center();
+  const Eigen::Vector3f half = 0.5f * box_.sizes();
+  return std::any_of(planes.begin(), planes.end(), [&](const Eigen::Vector4f& plane) {
+    const Eigen::Vector3f normal = plane.head<3>();
+    return normal.dot(middle) + plane.w() - normal.cwiseAbs().dot(half) > distance;
+  });
 }
 
 void SurfaceBlocks::deepest(const Planes& planes, float& limit, Eigen::Vector3f& point) const
 {
-  if (blocks_.empty())
+  if (blocks_.empty() || isApart(planes, limit))
     return;
-  std::vector<float> of_blocks;
-  std::vector<float> of_points;
-  centers_.distancesFrom(planes, 0, blocks_.size(), of_blocks);
-  for (std::size_t b = 0; b < blocks_.size(); ++b)
-  {
-    const Block& block = blocks_[b];
-    if (of_blocks[b] >= limit + block.radius)
-      continue;
-    points_.distancesFrom(planes, block.begin, block.end, of_points);
-    for (std::size_t k = block.begin; k < block.end; ++k)
-      if (of_points[k - block.begin] < limit)
+  constexpr std::size_t AT_ONCE = 8 * BLOCK;  // as many as fit on the stack
+  std::array<float, AT_ONCE> of_blocks;
+  std::array<float, AT_ONCE> of_points;
+  const auto distances = [&](const Coordinates& of, std::size_t begin, std::size_t end, float* result) {
+    const std::size_t count = (end - begin + BLOCK - 1) / BLOCK * BLOCK;
+    signedDistances(planes, &of.x[begin], &of.y[begin], &of.z[begin], count, result);
+  };
+  const auto look = [&](std::size_t begin, std::size_t end) {
+    distances(points_, begin, end, of_points.data());
+    for (std::size_t k = begin; k < end; ++k)
+      if (of_points[k - begin] < limit)
       {
-        limit = of_points[k - block.begin];
+        limit = of_points[k - begin];
         point = points_[k];
       }
+  };
+  for (std::size_t first = 0; first < blocks_.size(); first += AT_ONCE)
+  {
+    const std::size_t last = std::min(first + AT_ONCE, blocks_.size());
+    distances(centers_, first, last, of_blocks.data());
+    for (std::size_t b = first; b < last; ++b)
+      if (of_blocks[b - first] < limit + blocks_[b].around.radius)
+        for (std::size_t k = blocks_[b].begin; k < blocks_[b].end; k += AT_ONCE)
+          look(k, std::min(k + AT_ONCE, blocks_[b].end));
   }
 }
 }  // namespace bin_picking

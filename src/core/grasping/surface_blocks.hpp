@@ -15,8 +15,7 @@ class SurfaceBlocks
 public:
   struct Block
   {
-    Eigen::Vector3f center;
-    float radius;
+    Sphere around;
     std::size_t begin;
     std::size_t end;
   };
@@ -28,6 +27,8 @@ public:
   void deepest(const Planes& planes, float& limit, Eigen::Vector3f& point) const;
 
   const std::vector<Block>& blocks() const { return blocks_; }
+  /// Around points that lie within few millimetres: together they enclose all.
+  const std::vector<Sphere>& patches() const { return patches_; }
   /// \param index from a block's begin to before its end
   Eigen::Vector3f point(std::size_t index) const { return points_[index]; }
   const Eigen::AlignedBox3f& box() const { return box_; }
@@ -42,14 +43,15 @@ private:
     /// Repeats the last point up to a number that is computed at once.
     void fillUp();
     Eigen::Vector3f operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
-    void distancesFrom(const Planes& planes, std::size_t begin, std::size_t end, std::vector<float>& distances) const;
   };
 
   void addBlock(const Eigen::Vector3f* points, std::size_t count);
+  bool isApart(const Planes& planes, float distance) const;
 
   Coordinates points_;   ///< each block begins at one of the multiples that fillUp() leaves
   Coordinates centers_;  ///< of the blocks
   std::vector<Block> blocks_;
+  std::vector<Sphere> patches_;
   Eigen::AlignedBox3f box_;
 };
 }  // namespace bin_picking

@@ -65,6 +65,45 @@ BIN_PICKING_SIMD unsigned meetRows(const float* planes, std::size_t count, const
   return rows;
 }
 
+/// Along a line in the picture the inverse depth of a plane is linear, so that the corners of a block bound it.
+BIN_PICKING_SIMD unsigned meetBlocks(const float* planes, std::size_t count, const float* ray, const float* step,
+                                     float around, const float* nearest)
+{
+  float enters[BLOCK];
+  float leaves[BLOCK];
+  for (int k = 0; k < BLOCK; ++k)
+  {
+    enters[k] = 0.0f;
+    leaves[k] = NEVER;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const float* plane = planes + 4 * i;
+    const float first = plane[0] * ray[0] + plane[1] * ray[1] + plane[2];
+    const float across = plane[0] * step[0] * static_cast<float>(BLOCK - 1);
+    const float down = plane[1] * step[1] * static_cast<float>(BLOCK - 1);
+    const float least = first + (across < 0.0f ? across : 0.0f) + (down < 0.0f ? down : 0.0f);
+    const float most = first + (across > 0.0f ? across : 0.0f) + (down > 0.0f ? down : 0.0f);
+    const float to_next = plane[0] * step[0] * static_cast<float>(BLOCK);
+    const float offset = around - plane[3];
+    const bool is_behind = offset > 0.0f;  // the plane, seen from the camera
+    for (int k = 0; k < BLOCK; ++k)
+    {
+      const float low = least + to_next * static_cast<float>(k);
+      const float high = most + to_next * static_cast<float>(k);
+      const float slow = is_behind ? low : high;
+      const float leaving = offset / (slow > 0.0f ? slow : PARALLEL);
+      const float entering = is_behind ? 0.0f : offset / (low < 0.0f ? low : -PARALLEL);
+      leaves[k] = low > 0.0f && leaving < leaves[k] ? leaving : leaves[k];
+      enters[k] = high < 0.0f && entering > enters[k] ? entering : enters[k];
+    }
+  }
+  unsigned blocks = 0;
+  for (int k = 0; k < BLOCK; ++k)
+    blocks |= leaves[k] >= nearest[k] && enters[k] <= leaves[k] ? 1u << k : 0u;
+  return blocks;
+}
+
 BIN_PICKING_SIMD void raiseToHeights(const float* plane, const float* __restrict x, const float* __restrict y,
                                      const float* __restrict z, std::size_t count, float* __restrict distances)
 {
@@ -83,6 +122,12 @@ BIN_PICKING_SIMD void raiseToHeights(const float* plane, const float* __restrict
 const float* dataOf(const Planes& planes) { return planes.empty() ? nullptr : planes.front().data(); }
 }  // namespace
 
+unsigned mayMeet(const Planes& planes, const Eigen::Vector3f& ray, const Eigen::Vector2f& step, float around,
+                 const float* nearest)
+{
+  return meetBlocks(dataOf(planes), planes.size(), ray.data(), step.data(), around, nearest);
+}
+
 unsigned meet(const Planes& planes, const Eigen::Vector3f& ray, const Eigen::Vector2f& step, float near, Lanes& lanes)
 {
   return meetRows(dataOf(planes), planes.size(), ray.data(), step.data(), near, &lanes);
@@ -98,7 +143,7 @@ void signedDistances(const Planes& planes, const float* x, const float* y, const
 
 namespace
 {
-void raiseToAhead(float* values, std::size_t count, std::size_t ahead)
+BIN_PICKING_SIMD void raiseToAhead(float* values, std::size_t count, std::size_t ahead)
 {
   for (std::size_t i = 0; i + ahead < count; ++i)
     values[i] = values[i + ahead] > values[i] ? values[i + ahead] : values[i];

@@ -145,4 +145,12 @@ ToolShape closingShape(const Gripper& gripper, double from, double to)
   }
   return pieces;
 }
+
+ToolShape movedBy(const ToolShape& tool, const Eigen::Vector3d& motion)
+{
+  ToolShape moved = tool;
+  for (ToolPiece& piece : moved)
+    piece.shape = swept(piece.shape, motion);
+  return moved;
+}
 }  // namespace bin_picking

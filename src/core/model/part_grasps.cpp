@@ -120,6 +120,7 @@ std::vector<GraspDefinition> withCopiesAround(const GraspDefinition& written, co
   {
     GraspDefinition copy = written;
     copy.id += "@" + std::to_string(angle);
+    copy.copy_of = written.id;
     copy.T_object_tip = rotationAbout(axis, angle * M_PI / 180) * written.T_object_tip;
     grasps.push_back(copy);
   }
