@@ -86,12 +86,32 @@ struct Options
   test::BinTrouble trouble;
 };
 
+constexpr char HELP[] =
+    "usage: benchmark_grasp_collision [--bins N] [--grasps N] [--parts N] [--gripper NAME] [--part NAME]...\n"
+    "                                 [--forgotten SHARE] [--set KEY=VALUE]...\n\n"
+    "Random grasps in simulated bins: the collision check against the true meshes of all parts.\n\n"
+    "options:\n"
+    "  --bins N           bins of each part (default 10)\n"
+    "  --grasps N         grasps in each bin (default 500)\n"
+    "  --parts N          parts in a bin (default 25)\n"
+    "  --gripper NAME     of config/grippers (default ag95)\n"
+    "  --part NAME        of config/parts (default three_way_tube, l_bracket, stepped_shaft)\n"
+    "  --forgotten SHARE  of the parts that are seen but not known to the check (default 0.3)\n"
+    "  --set KEY=VALUE    parameters of the check: unseen_entry=0.004, ...\n";
+
 Options parse(int count, char** words)
 {
   Options options;
-  for (int i = 1; i + 1 < count; i += 2)
+  for (int i = 1; i < count; i += 2)
   {
     const std::string name = words[i];
+    if (name == "--help" || name == "-h")
+    {
+      std::fputs(HELP, stdout);
+      std::exit(EXIT_SUCCESS);
+    }
+    if (i + 1 == count)
+      throw ParameterError("option " + name + " needs a value");
     const std::string value = words[i + 1];
     if (name == "--bins")
       options.bins = std::stoi(value);

@@ -16,8 +16,9 @@ import unittest
 
 PACKAGE = pathlib.Path(__file__).resolve().parents[2]
 BENCHMARK = PACKAGE / "benchmark"
-sys.path[:0] = [str(BENCHMARK), str(BENCHMARK / "paper")]
+sys.path[:0] = [str(BENCHMARK), str(BENCHMARK / "paper"), str(PACKAGE / "test" / "benchmark")]
 
+import bop_folder  # noqa: E402
 import cells  # noqa: E402
 import figures  # noqa: E402
 import gains  # noqa: E402
@@ -326,6 +327,18 @@ class SmallRun(unittest.TestCase):
         self.assertEqual(second.returncode, 0, second.stderr)
         self.assertIn("kept", second.stderr)
         self.assertEqual(result.stat().st_mtime_ns, written)
+
+    def test_a_data_set_of_the_bop_benchmark_takes_the_place_of_ours(self):
+        half_turn = [-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+        bop = bop_folder.write(self.folder / "set", "three_way_tube", self.folder / "bop", half_turn)
+        done = self.run_paper("--dataset", str(bop), "--split", "val", "--only", "bins", "-j", "1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        outcome = json.loads((self.folder / "out" / "cells" / "own_bop.json").read_text(encoding="utf-8"))
+        fast = figures.runs_of([outcome], "our preset fast")[0]
+        self.assertTrue(fast["detections"])
+        self.assertTrue(all(map(figures.is_right, fast["detections"])))
+        self.assertEqual({detection["part"] for detection in fast["detections"]}, {"obj_000001"})
+        self.assertIn("bop", (self.folder / "out" / "report.md").read_text(encoding="utf-8"))
 
     def test_what_is_missing_is_named(self):
         outcome = self.run_paper("--data", str(self.folder), "--only", "laser")
