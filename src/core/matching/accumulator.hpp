@@ -10,9 +10,10 @@
 
 namespace bin_picking
 {
-/// The two-dimensional accumulator of Section 2.2.3: rows are the table's references, columns are steps of alpha. Cells
-/// are small, so that all of them stay in the processor's cache; a cell that is full stays full. In memory, columns lie
-/// one behind the other, so that many rows are searched for their peaks at once.
+/// The two-dimensional accumulator of Section 2.2.3: rows are the table's references, columns are steps of alpha. The
+/// votes of a cell are 16 bits in two planes, of which the upper one is touched only by every 256th vote: so the other,
+/// a byte a cell, stays in the processor's cache. A cell that is full stays full. In memory, columns lie one behind the
+/// other, so that many rows are searched for their peaks at once.
 class Accumulator
 {
 public:
@@ -47,11 +48,15 @@ public:
 
 private:
   void findRows(bool sum_adjacent, double min_share);
+  void raiseToColumn(std::uint32_t column, bool sum_adjacent);
+  std::uint32_t votesAt(std::uint32_t row, std::uint32_t column) const;
   Peak peakOf(std::uint32_t row, bool sum_adjacent) const;
 
   std::uint32_t num_rows_;
   std::uint32_t num_angles_;
-  std::vector<std::uint16_t> cells_;
+  std::vector<std::uint8_t> low_;
+  std::vector<std::uint8_t> high_;
+  bool carried_ = false;                ///< whether any vote went to the upper plane
   std::vector<std::uint16_t> highest_;  ///< per row
   std::vector<std::uint64_t> rows_;     ///< heap: votes in the upper half, the inverted row in the lower one
 };
