@@ -94,8 +94,8 @@ def times(results, plan):
         table.rows.append(row)
     table.notes = ["Processor time of one thread. The shares are of PPF's time on the same scenes in the same run, the"
                    " geometric mean over the scenes: they hold on other machines, the milliseconds do not.",
-                   "PPF + ICP: our point-to-point ICP seeks its neighbours among all points of the scene where there is"
-                   " no candidate target, for each of 50 clusters; that time is ours and not the method's."]
+                   "PPF + ICP: where there is no candidate target, 50 clusters are refined, each against the whole scene;"
+                   " that there are so many is our choice and not the method's."]
     return table
 
 
