@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <set>
 
 #include "bin_picking_perception/common/error.hpp"
 
@@ -880,10 +881,10 @@ void expectSame(const GraspSelection& a, const GraspSelection& b)
     expectSame(a.rejected[i], b.rejected[i]);
 }
 
-TEST(GraspPlanner, TheSameForAnyNumberOfThreads)
+/// Along two walls ten parts that can be taken with the fingers turned only: more than are tried at a time. In the
+/// middle two that can be taken as written.
+GraspSelection planAlongWalls(int threads, std::size_t most, int enough)
 {
-  // Along two walls ten parts that can be taken with the fingers turned only: more than are tried at a time. In the
-  // middle two that can be taken as written.
   std::vector<Vector3d> places = {{-0.06, 0.01, 0.06}, {0.06, -0.01, 0.05}};
   for (const double x : {-0.14, -0.07, 0.0, 0.07, 0.14})
     for (const double y : {-0.13, 0.13})
@@ -898,26 +899,66 @@ TEST(GraspPlanner, TheSameForAnyNumberOfThreads)
   part.symmetry.discrete.emplace_back(AngleAxisd(M_PI, Vector3d::UnitZ()));
   const std::vector<std::shared_ptr<const TrainedModel>> models = {blockModel()};
   const Bin bin = binBelowCamera();
-  const auto plan = [&](int threads, std::size_t most) {
-    GraspPlanner::Request request;
-    request.max_grasps = most;
-    GraspParameters parameters;
-    parameters.max_grasps = 100;
-    return GraspPlanner({{part}, twoFingerGripper(), std::nullopt, parameters, threads})
-        .plan({result, models, &bin, std::nullopt}, request);
-  };
-  const auto others = [](const GraspSelection& selection) {
-    return std::count_if(selection.grasps.begin(), selection.grasps.end(), [](const Grasp& g) { return g.spun != 0; });
-  };
-  const GraspSelection few = plan(1, 6);
+  GraspPlanner::Request request;
+  request.max_grasps = most;
+  GraspParameters parameters;
+  parameters.max_grasps = 100;
+  parameters.enough_grasps = enough;
+  return GraspPlanner({{part}, twoFingerGripper(), std::nullopt, parameters, threads})
+      .plan({result, models, &bin, std::nullopt}, request);
+}
+
+long numTurned(const GraspSelection& selection)
+{
+  return std::count_if(selection.grasps.begin(), selection.grasps.end(), [](const Grasp& g) { return g.spun != 0; });
+}
+
+TEST(GraspPlanner, TheSameForAnyNumberOfThreads)
+{
+  const GraspSelection few = planAlongWalls(1, 6, 100);
   EXPECT_EQ(few.grasps.size(), 6u);
-  const GraspSelection all = plan(1, 100);
-  EXPECT_GT(others(all), 8 * 2) << "of all ten, and some of each";
+  const GraspSelection all = planAlongWalls(1, 100, 100);
+  EXPECT_GT(numTurned(all), 8 * 2) << "of all ten, and some of each";
   for (const int threads : {2, 4})
   {
-    expectSame(few, plan(threads, 6));
-    expectSame(all, plan(threads, 100));
+    expectSame(few, planAlongWalls(threads, 6, 100));
+    expectSame(all, planAlongWalls(threads, 100, 100));
   }
+}
+
+TEST(GraspPlanner, TolerancesAreUsedWhileThereAreNotEnoughGrasps)
+{
+  const GraspSelection as_written = planAlongWalls(1, 100, 0);
+  const auto num_written = static_cast<int>(as_written.grasps.size());
+  EXPECT_GE(num_written, 2) << "in the middle";
+  EXPECT_EQ(numTurned(as_written), 0);
+  EXPECT_EQ(numTurned(planAlongWalls(1, 100, num_written)), 0) << "enough";
+  const auto detectionsOf = [](const GraspSelection& selection) {
+    std::set<std::size_t> detections;
+    for (const Grasp& grasp : selection.grasps)
+      detections.insert(grasp.detection_index);
+    return detections.size();
+  };
+  EXPECT_EQ(detectionsOf(planAlongWalls(1, 100, num_written + 1)), 2u + 8u) << "one time eight of them";
+  EXPECT_EQ(detectionsOf(planAlongWalls(1, 100, 100)), 12u);
+}
+
+TEST(GraspPlanner, WhatHoldsForAllCopiesAroundAnAxisIsToldOnce)
+{
+  GraspDefinition written = graspFromAbove("a");
+  written.opening = 1;  // no gripper opens as far
+  GraspDefinition copy = written;
+  copy.id = "a@90";
+  copy.copy_of = "a";
+  copy.T_object_tip = AngleAxisd(M_PI / 2, Vector3d::UnitZ()) * written.T_object_tip;
+  GraspDefinition other = written;
+  other.id = "b";
+  other.T_object_tip = AngleAxisd(M_PI / 4, Vector3d::UnitZ()) * written.T_object_tip;
+  const GraspSelection selection = selectInBin({detectionAt({0, 0, 0.03})}, partWith({written, copy, other}));
+  EXPECT_TRUE(selection.grasps.empty());
+  ASSERT_EQ(selection.rejected.size(), 2u);
+  EXPECT_EQ(selection.rejected[0].grasp_id, "a");
+  EXPECT_EQ(selection.rejected[1].grasp_id, "b");
 }
 
 TEST(GraspParameters, DefaultsLieWithinTheirRanges)

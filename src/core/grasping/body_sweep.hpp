@@ -16,6 +16,7 @@ constexpr float LOOK_AHEAD = 0.004f;
 
 using Planes = std::vector<Eigen::Vector4f>;
 
+/// Around points that are passed over together. Metres.
 struct Sphere
 {
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
@@ -62,14 +63,6 @@ inline void keepWorse(Encounter& worst, const Encounter& other)
 {
   if (isWorse(other, worst))
     worst = other;
-}
-
-inline float signedDistance(const Planes& planes, const Eigen::Vector3f& p)
-{
-  float distance = -std::numeric_limits<float>::infinity();
-  for (const Eigen::Vector4f& plane : planes)
-    distance = std::max(distance, plane.head<3>().dot(p) + plane.w());
-  return distance;
 }
 
 /// Of a box in one frame, seen from another.

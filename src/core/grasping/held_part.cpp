@@ -30,11 +30,11 @@ HeldPart::HeldPart(const DistanceField& field, const SurfaceBlocks& surface, flo
       max_drag_(max_drag),
       motion_camera_(motion_camera),
       corners_(cornersOf(surface.box(), Eigen::Isometry3f(T_camera_object.cast<float>()))),
-      in_sight_{LOOK_AHEAD + spacing, ColumnSpans(surface, way_object_, LOOK_AHEAD + LARGE + spacing)},
-      touching_{TOUCH + spacing, in_sight_.columns.within(TOUCH + spacing)},
-      of_spheres_{LOOK_AHEAD + LARGE + spacing, in_sight_.columns.within(LOOK_AHEAD + LARGE + spacing)}
+      columns_(surface, way_object_, LOOK_AHEAD + LARGE + spacing),
+      in_sight_(within(LOOK_AHEAD + spacing)),
+      touching_(within(TOUCH + spacing)),
+      of_spheres_(within(LOOK_AHEAD + LARGE + spacing))
 {
-  in_sight_.columns = in_sight_.columns.within(in_sight_.distance);
   for (std::size_t k = 0; k < 8; ++k)
     corners_.emplace_back(corners_[k] + motion_camera.cast<float>());
   for (const Eigen::Vector3f& corner : corners_)

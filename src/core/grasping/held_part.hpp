@@ -62,6 +62,7 @@ private:
     float distance;
     ColumnSpans columns;
   };
+  Near within(float distance) const { return {distance, columns_.within(distance)}; }
   Stretch whereNear(const Eigen::Vector3f& point_object, float room) const;
   float deepening(const Eigen::Vector3f& point_object, const Stretch& near) const;
   bool mayMeetInObject(const Sphere& points) const;
@@ -78,6 +79,7 @@ private:
   Eigen::Vector3d motion_camera_;
   Eigen::AlignedBox3f box_;
   std::vector<Eigen::Vector3f> corners_;
+  ColumnSpans columns_;  ///< of the surface alone
   Near in_sight_;
   Near touching_;
   Near of_spheres_;  ///< up to the radius LARGE

@@ -11,6 +11,7 @@
 #include "bin_sides.hpp"
 #include "body_sweep.hpp"
 #include "held_part.hpp"
+#include "own_pixels.hpp"
 #include "seen_space.hpp"
 #include "surface_blocks.hpp"
 #include "tool_way.hpp"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "bin_picking_perception/common/parallel.hpp"
-#include "bin_picking_perception/model/distance_field.hpp"
 #include "body_sweep.hpp"
 #include "sweep_lanes.hpp"
 
@@ -41,6 +40,9 @@ public:
 
 private:
   friend class OwnPixels;
+
+  static constexpr float FAR_AWAY = 1e4f;    ///< metres: free all along the ray; finite, so that products stay numbers
+  static constexpr float MIN_DEPTH = 0.05f;  ///< metres: what is nearer to the camera has no place in the picture
 
   struct Window
   {
@@ -93,7 +95,7 @@ private:
   void bridge(std::size_t begin, std::size_t end, std::size_t step);
   void goOnBeyond(const Ends& ends, const Line& line, const std::vector<Ends>& crossing);
   void offer(std::size_t pixel, float depth, std::size_t hidden_by);
-  void hideBin(const Bin& bin, int v);
+  void hideBin(const Bin& bin, const Executor& executor);
   std::vector<float> allowedDepth(float entry) const;
   void boundBlocks();
   Sphere aroundPoints(int u, int v, float nearest, float farthest) const;
@@ -116,29 +118,5 @@ private:
   float surface_clearance_ = 0;
   float unseen_entry_ = 0;
   float shadow_entry_ = 0;
-};
-
-/// The pixels of a part: those whose measured point lies on its surface, and gaps that it alone hides. Told pixel by
-/// pixel when asked, since few are.
-class OwnPixels
-{
-public:
-  /// \param space, field must outlive it \param tolerance less than the field's band, metres
-  OwnPixels(const SeenSpace& space, const DistanceField& field, const Eigen::AlignedBox3f& box_object,
-            const Pose& T_camera_object, float tolerance);
-
-  bool at(int u, int v) const;
-
-private:
-  bool isOnSurface(std::size_t pixel, int u, int v) const;
-
-  const SeenSpace& space_;
-  const DistanceField& field_;
-  float tolerance_;
-  SeenSpace::Window window_;
-  float nearest_;  ///< depths between which the part lies, metres
-  float farthest_;
-  // From pixels to rays in the part's frame.
-  Eigen::Vector3f camera_, corner_, right_, down_;
 };
 }  // namespace bin_picking

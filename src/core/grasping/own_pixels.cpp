@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include "own_pixels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bin_picking
+{
+OwnPixels::OwnPixels(const SeenSpace& space, const DistanceField& field, const Eigen::AlignedBox3f& box_object,
+                     const Pose& T_camera_object, float tolerance)
+    : space_(space), field_(field), tolerance_(tolerance)
+{
+  const std::vector<Eigen::Vector3f> corners = cornersOf(box_object, Eigen::Isometry3f(T_camera_object.cast<float>()));
+  const auto [front, back] = std::minmax_element(
+      corners.begin(), corners.end(), [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return a.z() < b.z(); });
+  nearest_ = front->z() - tolerance;
+  farthest_ = back->z() + tolerance;
+  window_ = space.windowOf(corners, tolerance);
+  const Eigen::Isometry3f T_object(T_camera_object.inverse().cast<float>());
+  camera_ = T_object.translation();
+  right_ = T_object.linear().col(0) * space.step_.x();
+  down_ = T_object.linear().col(1) * space.step_.y();
+  corner_ = T_object.linear() * space.ray(0, 0);
+}
+
+bool OwnPixels::at(int u, int v) const
+{
+  if (!window_.contains(u, v))
+    return false;
+  const std::size_t pixel = space_.index(u, v);
+  if (space_.measured_[pixel] != 0)
+    return isOnSurface(pixel, u, v);
+  const std::int32_t end = space_.hidden_by_[pixel];
+  return end >= 0 && isOnSurface(static_cast<std::size_t>(end), end % space_.stride_, end / space_.stride_);
+}
+
+bool OwnPixels::isOnSurface(std::size_t pixel, int u, int v) const
+{
+  const float depth = space_.depth_[pixel];
+  if (depth < nearest_ || depth > farthest_)
+    return false;
+  const Eigen::Vector3f ray = corner_ + static_cast<float>(u) * right_ + static_cast<float>(v) * down_;
+  return std::abs(field_.at(camera_ + depth * ray)) <= tolerance_;
+}
+}  // namespace bin_picking
