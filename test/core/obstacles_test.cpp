@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <utility>
 #include <vector>
 
+#include "../../src/core/grasping/bin_sides.hpp"
 #include "../../src/core/grasping/body_sweep.hpp"
 #include "../../src/core/grasping/column_spans.hpp"
+#include "../../src/core/grasping/sweep_lanes.hpp"
 #include "bin_picking_perception/common/error.hpp"
 #include "core/bin_of_grasps.hpp"
 #include "core/mesh_shapes.hpp"
@@ -298,6 +301,39 @@ TEST(Obstacles, WhatLiesOnTheTargetIsNotLifted)
   }
 }
 
+TEST(Obstacles, APartThatComesOutHidesNoClearanceOfTheGripper)
+{
+  // It stands on the floor, against another: touching them says nothing of how safe the fingers are.
+  Scene scene;
+  scene.add(blockAt({BLOCK.x(), 0, 0.015}), true);
+  const Obstacles obstacles = scene.obstacles();
+  const Clearance out = obstacles.pulledOut(wayUp({0, 0, 0.015}, WIDTH).motion_camera, 0);
+  EXPECT_TRUE(out.free());
+  EXPECT_EQ(out.kind, ObstacleKind::None) << out.obstacle;
+}
+
+TEST(BinSides, areAsFarFromABodyAsTheirBoxes)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto anywhere = [&](double size) {
+    return Vector3d(size * Vector3d(unit(random), unit(random), unit(random)));
+  };
+  for (int i = 0; i < 200; ++i)
+  {
+    Bin bin;
+    bin.inner_size = {0.3, 0.2, 0.15};
+    bin.wall_thickness = 0.01;
+    bin.T_camera_bin = Translation3d(anywhere(0.3)) * Eigen::AngleAxisd(3 * unit(random), anywhere(1).normalized());
+    const Pose T_camera_body =
+        bin.T_camera_bin * Translation3d(anywhere(0.2)) * Eigen::AngleAxisd(unit(random), anywhere(1).normalized());
+    const ConvexBody body =
+        swept(transformed(makeBox(anywhere(0.02), {0.02, 0.01, 0.05}), T_camera_body), anywhere(0.1));
+    for (const BinSide& side : binSides(bin))
+      EXPECT_NEAR(clearance(body, side, bin.T_camera_bin.inverse()), clearance(body, side.box), 1e-9) << side.name;
+  }
+}
+
 TEST(ColumnSpans, holdAllSurfaceThatIsAsNearAsAsked)
 {
   const OrientedPoints surface = sampleSurface(block().mesh, 0.0015, 1);
@@ -327,6 +363,49 @@ TEST(ColumnSpans, holdAllSurfaceThatIsAsNearAsAsked)
     EXPECT_GT(held, 1000u);
     EXPECT_GT(wide.at({0.1f, 0.1f, 0}).begin, wide.at({0.1f, 0.1f, 0}).end) << "far beside it there is nothing";
   }
+}
+
+TEST(ColumnSpans, tellOfARowOfPixelsWhatTheyTellOfEachPoint)
+{
+  const SurfaceBlocks blocks(sampleSurface(block().mesh, 0.0015, 1).points);
+  const Eigen::Vector3f direction = Eigen::Vector3f(0.2f, -0.3f, 0.9f).normalized();
+  const float distance = 0.004f;
+  const float length = 0.05f;
+  const ColumnSpans spans = ColumnSpans(blocks, direction, distance).within(distance);
+  const Eigen::Isometry3f T_object_camera = Eigen::Translation3f(0.01f, -0.02f, -0.8f) *
+                                            Eigen::AngleAxisf(0.3f, Eigen::Vector3f(1, 2, -1).normalized()) *
+                                            Eigen::Isometry3f::Identity();
+  const ColumnSpans::PixelView view = spans.seenBy(T_object_camera);
+  constexpr int PIXELS = bin_picking::BLOCK;
+  constexpr float STEP = 1.0f / 1200;
+  std::size_t met = 0;
+  std::size_t passed = 0;
+  std::size_t different = 0;
+  for (int v = -150; v < 150; v += 3)
+    for (int u = -400; u < 0; u += PIXELS)
+    {
+      const Eigen::Vector3f ray(static_cast<float>(u) * STEP, static_cast<float>(v) * STEP, 1);
+      float depth[PIXELS];
+      for (int k = 0; k < PIXELS; ++k)
+        depth[k] = 0.7f + 0.0011f * static_cast<float>((u + 7 * v + 13 * k) & 127);
+      const unsigned bits = spans.meetOnWay(view, ray, STEP, depth, distance, length);
+      for (int k = 0; k < PIXELS; ++k)
+      {
+        const Eigen::Vector3f point =
+            T_object_camera *
+            Eigen::Vector3f(depth[k] * (ray + static_cast<float>(k) * STEP * Eigen::Vector3f::UnitX()));
+        const ColumnSpans::Span span = spans.at(point);
+        const float along = direction.dot(point);
+        const bool meets =
+            std::max(0.0f, span.begin - distance - along) <= std::min(length, span.end + distance - along);
+        met += meets;
+        passed += !meets;
+        different += (bits >> k & 1) != (meets ? 1u : 0u);
+      }
+    }
+  EXPECT_GT(met, 300u);
+  EXPECT_GT(passed, 300u);
+  EXPECT_LE(different, met / 100) << "only where rounding moves a point into the next column";
 }
 
 TEST(Obstacles, WhatLiesOnAnyEdgeOfTheTargetHoldsIt)

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -22,6 +23,13 @@ public:
   /// Calls task(0) ... task(num_tasks - 1), in any order and possibly at once; returns when all are done. An exception
   /// of a task reaches the caller. Safe to call from several threads.
   void forEach(std::size_t num_tasks, const std::function<void(std::size_t)>& task) const;
+
+  /// Runs task(begin, end) for [0, count) in pieces of `size`: for many short tasks of a known cost.
+  void forEachBundle(std::size_t count, std::size_t size,
+                     const std::function<void(std::size_t, std::size_t)>& task) const
+  {
+    forEach((count + size - 1) / size, [&](std::size_t b) { task(b * size, std::min(count, (b + 1) * size)); });
+  }
 
   int numThreads() const { return num_threads_; }
 

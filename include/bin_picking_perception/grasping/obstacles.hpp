@@ -57,8 +57,9 @@ struct Clearance
 {
   /// Signed, metres; < 0: how deep the body reaches in. Apart, a lower bound, exact where a face is nearest; infinite
   /// where nothing is near (5 mm more than bin_clearance for the bin; 4 mm for the rest). Of unseen space:
-  /// only what exceeds the entry allowed. Of the held part: how much deeper than at rest, negative; among parts and
-  /// measured points the search ends beyond max_drag, so that more than that is only a bound.
+  /// only what exceeds the entry allowed. Of the held part, which touches what it lies on as a rule: infinite where it
+  /// comes out; else how much deeper than at rest it gets into the first that holds it, negative: more than that is
+  /// only a bound.
   double distance = std::numeric_limits<double>::infinity();
   double required = 0;  ///< of that kind of obstacle, metres
   ObstacleKind kind = ObstacleKind::None;
@@ -138,8 +139,9 @@ public:
   /// The gripper alone on the way out.
   Clearance leaving(const ToolShape& closed, const ToolMotion& motion, std::size_t target) const;
 
-  /// The target alone on the way out. It may touch what it touches at rest, but go no deeper into it than `max_drag`.
-  /// The same for all grasps that retreat by the same motion (metres).
+  /// The target alone on the way out. It may touch what it touches at rest, but go no deeper into it than `max_drag`:
+  /// the clearance tells the first that holds it, or of nothing. The same for all grasps that retreat by the same
+  /// motion (metres).
   Clearance pulledOut(const Eigen::Vector3d& motion_camera, std::size_t target) const;
 
 private:

@@ -16,13 +16,19 @@ struct BinSide
   std::string name;    ///< "floor", "wall at +x", ...
   bool floor = false;  ///< or a wall
   ConvexBody box;      ///< camera frame
+  Eigen::AlignedBox3d box_bin;
 };
 
 /// The walls stand on the floor and end at the rim; the floor reaches under them.
 std::vector<BinSide> binSides(const Bin& bin);
 
-/// Whether a body that moves straight stays that far from all sides, because it stays over the rim, or within the walls
-/// and over the floor. If not, it may still. \param T_bin_body, motion_bin of the body, metres
-bool isWellInside(const ConvexBody& body, const Pose& T_bin_body, const Eigen::Vector3d& motion_bin, const Bin& bin,
-                  double distance);
+/// clearance() of a body (camera frame) from a side, in less time for a box's corners follow from its axes.
+/// \param T_bin_camera of the side's bin
+double clearance(const ConvexBody& body, const BinSide& side, const Pose& T_bin_camera);
+
+/// Whether boxes along the same axes are farther apart than the distance along one of them.
+inline bool areApart(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b, double distance)
+{
+  return ((a.min() - b.max()).array() > distance).any() || ((b.min() - a.max()).array() > distance).any();
+}
 }  // namespace bin_picking

@@ -28,6 +28,7 @@ struct BodySweep
 {
   explicit BodySweep(ConvexBody body) : shape(std::move(body))
   {
+    planes.reserve(shape.planes.size());
     for (const Eigen::Vector4d& plane : shape.planes)
       planes.push_back(plane.cast<float>());
     for (const Eigen::Vector3d& v : shape.vertices)

@@ -31,11 +31,23 @@ public:
   /// Of the point's column.
   Span at(const Eigen::Vector3f& point) const
   {
-    const Eigen::Vector2f q = (across_ * point - low_) / CELL;
-    const bool inside =
-        q.x() >= 0 && q.y() >= 0 && q.x() < static_cast<float>(columns_) && q.y() < static_cast<float>(rows_);
-    return inside ? Span{-back_[index(q)], ahead_[index(q)]} : Span{};
+    const Eigen::Vector2f q = ((across_ * point - low_) / CELL).cwiseMax(0.0f).cwiseMin(last_);
+    return {-back_[index(q)], ahead_[index(q)]};
   }
+
+  /// From a pixel and its depth to its column and how far along the direction it is: linear in both.
+  struct PixelView
+  {
+    Eigen::Matrix3f turn;
+    Eigen::Vector3f origin;
+  };
+  PixelView seenBy(const Eigen::Isometry3f& T_object_camera) const;
+
+  /// Which of BLOCK pixels side by side may come within the distance of a column's span on a way of that length along
+  /// the direction. \param ray of the first pixel, z = 1 \param step of the rays' x from pixel to pixel \param depth of
+  /// each, metres \return a bit for each
+  unsigned meetOnWay(const PixelView& view, const Eigen::Vector3f& ray, float step, const float* depth, float distance,
+                     float length) const;
 
 private:
   static constexpr float CELL = 0.003f;  // metres
@@ -50,13 +62,13 @@ private:
     return static_cast<std::size_t>(q.y()) * stride_ + static_cast<std::size_t>(q.x());
   }
 
+  Eigen::Vector3f direction_;
   Eigen::Matrix<float, 2, 3> across_;  ///< to coordinates in the plane of the columns
   Eigen::Vector2f low_ = Eigen::Vector2f::Zero();
   float patch_ = 0;  ///< largest radius of what was entered by its middle, metres
-  std::size_t stride_ = 0;
-  std::size_t columns_ = 0;  ///< up to here each knows what is around it
-  std::size_t rows_ = 0;
-  std::vector<float> ahead_;  ///< the farthest along the direction
-  std::vector<float> back_;   ///< and against it
+  std::size_t stride_ = 1;
+  Eigen::Vector2f last_ = Eigen::Vector2f::Zero();  ///< column and row; as the first, they are empty
+  std::vector<float> ahead_;                        ///< the farthest along the direction
+  std::vector<float> back_;                         ///< and against it
 };
 }  // namespace bin_picking

@@ -61,6 +61,7 @@ std::vector<Vector3d> sweptVertices(const ConvexBody& body, const Vector3d& moti
 {
   const Vector3d direction = motion.normalized();
   std::vector<Vector3d> vertices;
+  vertices.reserve(2 * body.vertices.size());
   for (const Vector3d& v : body.vertices)
   {
     bool looks_back = false;
@@ -143,11 +144,13 @@ ConvexBody swept(const ConvexBody& body, const Vector3d& motion)
     return body;
   ConvexBody sweep;
   sweep.vertices = sweptVertices(body, motion);
+  sweep.planes.reserve(body.planes.size() + 2 * body.edges.size());
   sweep.planes = body.planes;
   for (Vector4d& plane : sweep.planes)
     plane.w() -= std::max(0.0, plane.head<3>().dot(motion));
   const Vector3d direction = motion / length;
-  sweep.edges = {direction};
+  sweep.edges.reserve(1 + body.edges.size());
+  sweep.edges.push_back(direction);
   for (const Vector3d& edge : body.edges)
   {
     const Vector3d cross = direction.cross(edge);

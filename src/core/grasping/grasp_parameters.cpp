@@ -33,7 +33,7 @@ void GraspParameters::visit(ParameterVisitor& v)
            0, 100},
           weight_uncovered);
   v.field({"weight_tilt", "", "share of an upright approach", 0, 100}, weight_tilt);
-  v.field({"weight_clearance", "", "share of the distance to bin and neighbours", 0, 100}, weight_clearance);
+  v.field({"weight_clearance", "", "share of the gripper's distance to bin and neighbours", 0, 100}, weight_clearance);
   v.group("obstacles", obstacles);
   v.group("reach", reach);
 }

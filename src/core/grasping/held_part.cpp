@@ -9,9 +9,8 @@ namespace bin_picking
 {
 namespace
 {
-constexpr float MIN_STEP = 0.0005f;  // metres: where a point is about to touch
+constexpr float MIN_STEP = 0.0005f;  // metres: where a point is about to get too deep
 constexpr float LARGE = 0.008f;      // metres: radius up to which many points are passed over together
-constexpr float TOUCH = 0.001f;      // metres: once something is about to touch, only what is as near matters
 
 Eigen::Vector3f wayOfOthers(const Eigen::Vector3d& motion)
 {
@@ -30,10 +29,9 @@ HeldPart::HeldPart(const DistanceField& field, const SurfaceBlocks& surface, flo
       max_drag_(max_drag),
       motion_camera_(motion_camera),
       corners_(cornersOf(surface.box(), Eigen::Isometry3f(T_camera_object.cast<float>()))),
-      columns_(surface, way_object_, LOOK_AHEAD + LARGE + spacing),
-      in_sight_(within(LOOK_AHEAD + spacing)),
-      touching_(within(TOUCH + spacing)),
-      of_spheres_(within(LOOK_AHEAD + LARGE + spacing))
+      columns_(surface, way_object_, LARGE + spacing),
+      of_points_(within(spacing)),
+      of_spheres_(within(LARGE + spacing))
 {
   for (std::size_t k = 0; k < 8; ++k)
     corners_.emplace_back(corners_[k] + motion_camera.cast<float>());
@@ -78,52 +76,61 @@ bool HeldPart::mayMeetInObject(const Sphere& points) const
   return !stretchInBox(points.center, points.radius).isEmpty();
 }
 
-/// Where on the way a point may be near. \param room only what comes nearer matters, metres
-HeldPart::Stretch HeldPart::whereNear(const Eigen::Vector3f& point, float room) const
+/// Whether none of the points within the sphere gets into the part anywhere on the way; if not, they may still.
+bool HeldPart::staysOutside(const Sphere& points) const
 {
-  const Stretch near = stretchNear(point, room < TOUCH ? touching_ : in_sight_);
-  if (near.isEmpty())
-    return near;
-  const Stretch in_box = stretchInBox(point, 0);
-  return {std::max(near.from, in_box.from), std::min(near.to, in_box.to)};
+  Stretch inside = stretchInBox(points.center, points.radius);
+  if (points.radius <= LARGE)
+  {
+    const Stretch near = stretchNear(points.center, of_spheres_);
+    inside = {std::max(inside.from, near.from), std::min(inside.to, near.to)};
+  }
+  for (float way = inside.from; way <= inside.to;)
+  {
+    const float room = field_.at(points.center + way * way_object_) - points.radius;
+    if (!(room >= 0))
+      return false;
+    if (way == inside.to)
+      break;
+    way = std::min(way + std::max(room, MIN_STEP), inside.to);
+  }
+  return true;
 }
 
-/// How much deeper the point gets into the part than it is at the start: <= 0 not at all. Each step is as long as the
-/// distance from the surface allows. Ends where it is more than max_drag: farther on it may be deeper.
-float HeldPart::deepening(const Eigen::Vector3f& point, const Stretch& near) const
+/// By how much the point gets deeper into the part than it is at the start, where that is more than max_drag for the
+/// first time; 0: nowhere. No step is so long that it could miss that.
+float HeldPart::deepening(const Eigen::Vector3f& point) const
 {
+  const Stretch near = stretchNear(point, of_points_);
+  if (near.isEmpty())
+    return 0;
+  const Stretch in_box = stretchInBox(point, 0);
+  const float end = std::min(near.to, in_box.to);
   const auto atRest = [&] { return std::min(0.0f, field_.at(point)); };  // what is not inside does not ask
-  float nearest = field_.band();
-  for (float way = near.from;;)
+  for (float way = std::max(near.from, in_box.from); way <= end;)
   {
     const float distance = field_.at(point + way * way_object_);
     if (!(distance >= -max_drag_) && !(distance >= atRest() - max_drag_))  // too deep, or not a number
       return atRest() - distance;
-    nearest = std::min(nearest, distance);
-    if (way >= near.to)
+    if (way == end)
       break;
-    way = std::min(way + std::max(distance, MIN_STEP), near.to);
+    way = std::min(way + std::max(distance + max_drag_, MIN_STEP), end);
   }
-  return nearest < 0 ? atRest() - nearest : -nearest;
+  return 0;
 }
 
-void HeldPart::meet(const SurfaceBlocks& other, const Pose& T_camera_other, int index, Encounter& worst) const
+Encounter HeldPart::meet(const SurfaceBlocks& other, const Pose& T_camera_other, int index) const
 {
   const Eigen::Isometry3f T_object_other = T_object_camera_ * Eigen::Isometry3f(T_camera_other.cast<float>());
-  const Eigen::Isometry3f T_camera(T_camera_other.cast<float>());
-  const auto isOwn = [] { return false; };
   for (const SurfaceBlocks::Block& block : other.blocks())
-  {
-    if (!mayMeetInObject({T_object_other * block.around.center, block.around.radius}))
-      continue;
-    for (std::size_t k = block.begin; k < block.end; ++k)
-      meet(T_camera * other.point(k), ObstacleKind::Part, index, isOwn, worst);
-    if (!worst.free())
-      return;
-  }
+    if (!staysOutside({T_object_other * block.around.center, block.around.radius}))
+      for (std::size_t k = block.begin; k < block.end; ++k)
+        if (const float deeper = deepening(T_object_other * other.point(k)); deeper != 0)
+          return caught(deeper, ObstacleKind::Part, index, T_camera_other.cast<float>() * other.point(k));
+  return {};
 }
 
-void HeldPart::meetSide(const ConvexBody& side, ObstacleKind kind, int index, Encounter& worst) const
+Encounter HeldPart::meetSide(const ConvexBody& side, ObstacleKind kind, int index) const
 {
   // Seen from the part, the side moves the other way: all that it covers is convex.
   const auto toObject = [&](const ConvexBody& body) {
@@ -134,14 +141,39 @@ void HeldPart::meetSide(const ConvexBody& side, ObstacleKind kind, int index, En
     toFrame(T_object_camera_.inverse(), planes, moved);
     return moved;
   };
-  Encounter at_rest;
-  Encounter on_the_way;
-  at_rest.distance = on_the_way.distance = LOOK_AHEAD;
-  surface_.deepest(toObject(swept(side, -motion_camera_)), on_the_way.distance, on_the_way.contact);
-  if (on_the_way.distance >= LOOK_AHEAD)
+  float at_rest = 0;
+  float on_the_way = -max_drag_;
+  Eigen::Vector3f contact;
+  surface_.deepest(toObject(swept(side, -motion_camera_)), on_the_way, contact);
+  if (on_the_way == -max_drag_)
+    return {};
+  Eigen::Vector3f ignored;
+  surface_.deepest(toObject(side), at_rest, ignored);
+  const float deeper = at_rest - on_the_way;
+  return deeper > max_drag_ ? caught(deeper, kind, index, T_object_camera_.inverse() * contact) : Encounter{};
+}
+
+HeldPart::AmongPoints::AmongPoints(const HeldPart& part, float own)
+    : part_(part), own_(own), view_(part.of_points_.columns.seenBy(part.T_object_camera_))
+{}
+
+bool HeldPart::AmongPoints::mayMeet(const Sphere& points_camera) const
+{
+  return met_.free() && part_.mayMeetInObject({part_.T_object_camera_ * points_camera.center, points_camera.radius});
+}
+
+unsigned HeldPart::AmongPoints::mayMeet(const Eigen::Vector3f& ray, float step, const float* depth) const
+{
+  const Near& near = part_.of_points_;
+  return near.columns.meetOnWay(view_, ray, step, depth, near.distance, part_.length_);
+}
+
+void HeldPart::AmongPoints::meet(const Eigen::Vector3f& point_camera)
+{
+  const Eigen::Vector3f point = part_.T_object_camera_ * point_camera;
+  if (!met_.free() || std::abs(part_.field_.at(point)) <= own_)
     return;
-  surface_.deepest(toObject(side), at_rest.distance, at_rest.contact);
-  const float deeper = std::min(0.0f, at_rest.distance) - on_the_way.distance;
-  keepWorse(worst, {-deeper, -max_drag_, kind, index, T_object_camera_.inverse() * on_the_way.contact});
+  if (const float deeper = part_.deepening(point); deeper != 0)
+    met_ = part_.caught(deeper, ObstacleKind::Surface, -1, point_camera);
 }
 }  // namespace bin_picking

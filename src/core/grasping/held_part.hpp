@@ -8,8 +8,9 @@
 
 namespace bin_picking
 {
-/// A part on its straight way out, and how deep points of others get into it. It rests on them, so that only what is
-/// deeper than at the start counts.
+/// A part on its straight way out, and what it gets caught on. It lies on others and between them, so that it may touch
+/// them all the way; what counts are points that get deeper into it than they are at rest, by more than max_drag.
+/// Each check returns the first that it finds, with the depth there (farther on it may be deeper), or nothing met.
 class HeldPart
 {
 public:
@@ -22,30 +23,33 @@ public:
   /// The corners of the part's own box at both ends of the way, camera frame.
   const std::vector<Eigen::Vector3f>& corners() const { return corners_; }
 
-  /// Whether any point within the sphere may come near on the way: most lie under the part, or beside it.
-  bool mayMeet(const Sphere& points_camera) const
+  /// On another part that rests, by its number.
+  Encounter meet(const SurfaceBlocks& other, const Pose& T_camera_other, int index) const;
+
+  /// On a solid side of the bin, by its number: the deepest of the part's points, by as much as it is deeper than the
+  /// deepest at rest.
+  Encounter meetSide(const ConvexBody& side, ObstacleKind kind, int index) const;
+
+  /// On measured points: visits them in SeenSpace::forEachPoint.
+  class AmongPoints
   {
-    return mayMeetInObject({T_object_camera_ * points_camera.center, points_camera.radius});
-  }
+  public:
+    /// \param own points so near to the surface are the part's own, metres \param part must outlive this
+    AmongPoints(const HeldPart& part, float own);
 
-  /// Offers a point that rests in the camera frame: by how much it gets deeper into the part than it is now; no more
-  /// than the first depth beyond max_drag that was met.
-  /// \param isOwn whether the point is the part's own, asked only of what is near on the way
-  template <typename IsOwn>
-  void meet(const Eigen::Vector3f& point_camera, ObstacleKind kind, int index, const IsOwn& isOwn,
-            Encounter& worst) const
-  {
-    const Eigen::Vector3f point_object = T_object_camera_ * point_camera;
-    const Stretch near = whereNear(point_object, worst.margin() - max_drag_);
-    if (!near.isEmpty() && !isOwn())
-      keepWorse(worst, {-deepening(point_object, near), -max_drag_, kind, index, point_camera});
-  }
+    /// Most points lie under the part, or beside it.
+    bool mayMeet(const Sphere& points_camera) const;
+    unsigned mayMeet(const Eigen::Vector3f& ray, float step, const float* depth) const;
+    void meet(const Eigen::Vector3f& point_camera);
 
-  /// The same for all points of another part.
-  void meet(const SurfaceBlocks& other, const Pose& T_camera_other, int index, Encounter& worst) const;
+    const Encounter& met() const { return met_; }
 
-  /// The same for the points of this part and a solid side of the bin.
-  void meetSide(const ConvexBody& side, ObstacleKind kind, int index, Encounter& worst) const;
+  private:
+    const HeldPart& part_;
+    float own_;
+    ColumnSpans::PixelView view_;
+    Encounter met_;
+  };
 
 private:
   /// A part of the way that others make, seen from the part, metres.
@@ -63,11 +67,15 @@ private:
     ColumnSpans columns;
   };
   Near within(float distance) const { return {distance, columns_.within(distance)}; }
-  Stretch whereNear(const Eigen::Vector3f& point_object, float room) const;
-  float deepening(const Eigen::Vector3f& point_object, const Stretch& near) const;
   bool mayMeetInObject(const Sphere& points) const;
   Stretch stretchNear(const Eigen::Vector3f& center, const Near& near) const;
   Stretch stretchInBox(const Eigen::Vector3f& center, float radius) const;
+  bool staysOutside(const Sphere& points) const;
+  float deepening(const Eigen::Vector3f& point_object) const;
+  Encounter caught(float deepening, ObstacleKind kind, int index, const Eigen::Vector3f& point_camera) const
+  {
+    return {-deepening, -max_drag_, kind, index, point_camera};
+  }
 
   const DistanceField& field_;
   const SurfaceBlocks& surface_;
@@ -80,8 +88,7 @@ private:
   Eigen::AlignedBox3f box_;
   std::vector<Eigen::Vector3f> corners_;
   ColumnSpans columns_;  ///< of the surface alone
-  Near in_sight_;
-  Near touching_;
+  Near of_points_;
   Near of_spheres_;  ///< up to the radius LARGE
 };
 }  // namespace bin_picking

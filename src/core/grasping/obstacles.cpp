@@ -43,13 +43,14 @@ void requireFinite(const Bin& bin)
   requireFinite(Eigen::Matrix<double, 1, 1>(bin.wall_thickness), "The wall thickness of the bin");
 }
 
-/// Whether one of the body's faces, or of the other's, keeps them apart by the distance.
-bool farApart(const ConvexBody& a, const ConvexBody& b, double distance)
+/// Around points on a straight way, in the frame to which T leads; the points are Eigen vectors.
+template <typename Points>
+Eigen::AlignedBox3d boxAround(const Points& points, const Pose& T, const Eigen::Vector3d& motion)
 {
-  return std::any_of(b.planes.begin(), b.planes.end(), [&](const Eigen::Vector4d& plane) {
-    return std::all_of(a.vertices.begin(), a.vertices.end(),
-                       [&](const Eigen::Vector3d& v) { return plane.head<3>().dot(v) + plane.w() > distance; });
-  });
+  Eigen::AlignedBox3d box;
+  for (const auto& point : points)
+    box.extend(Eigen::Vector3d(T * point.template cast<double>()));
+  return box.extend(Eigen::AlignedBox3d(box.min() + motion, box.max() + motion));
 }
 
 /// The points of the surface, and the corners of the mesh, which reach farthest between them.
@@ -73,7 +74,6 @@ struct Obstacles::Impl
   };
 
   ObstacleParameters parameters;
-  std::optional<Bin> bin;
   Pose T_bin_camera = Pose::Identity();  ///< with a bin
   std::vector<BinSide> sides;            ///< none without a bin
   std::optional<SeenSpace> seen;
@@ -103,17 +103,23 @@ struct Obstacles::Impl
   /// Distances from the bin beyond this are not asked for, metres.
   double binLookAhead() const { return parameters.bin_clearance + BIN_LOOK_AHEAD; }
 
-  Encounter meetBin(const BodySweep& body) const
+  static ObstacleKind kindOf(const BinSide& side)
   {
+    return side.floor ? ObstacleKind::BinFloor : ObstacleKind::BinWall;
+  }
+
+  Encounter meetBin(ToolWay& way, std::size_t piece) const
+  {
+    const Eigen::AlignedBox3d covered = boxAround(way.piece(piece).shape.vertices, T_bin_camera * way.T_camera_tool0(),
+                                                  T_bin_camera.linear() * way.motion_camera());
     Encounter worst;
     for (std::size_t i = 0; i < sides.size(); ++i)
     {
       const BinSide& side = sides[i];
-      if (farApart(body.shape, side.box, binLookAhead()))
+      if (areApart(covered, side.box_bin, binLookAhead()))
         continue;
-      keepWorse(worst, {static_cast<float>(bin_picking::clearance(body.shape, side.box)),
-                        static_cast<float>(parameters.bin_clearance),
-                        side.floor ? ObstacleKind::BinFloor : ObstacleKind::BinWall, static_cast<int>(i)});
+      keepWorse(worst, {static_cast<float>(bin_picking::clearance(way.covered(piece).shape, side, T_bin_camera)),
+                        static_cast<float>(parameters.bin_clearance), kindOf(side), static_cast<int>(i)});
     }
     return worst;
   }
@@ -170,24 +176,20 @@ struct Obstacles::Impl
     const auto spacing = static_cast<float>(model.parameters.surface_spacing);
     const HeldPart way(model.field, *held.surface, spacing, held.placed.T_camera_object, motion_camera,
                        static_cast<float>(parameters.max_drag));
-    Encounter worst;
+    const Eigen::AlignedBox3d covered = boxAround(way.corners(), T_bin_camera, Eigen::Vector3d::Zero());
     for (std::size_t i = 0; i < sides.size(); ++i)
-      way.meetSide(sides[i].box, sides[i].floor ? ObstacleKind::BinFloor : ObstacleKind::BinWall, static_cast<int>(i),
-                   worst);
+      if (!areApart(covered, sides[i].box_bin, 0))
+        if (const Encounter met = way.meetSide(sides[i].box, kindOf(sides[i]), static_cast<int>(i)); !met.free())
+          return met;
     for (const std::size_t i : neighboursOf(target, way.box(), motion_camera))
-      if (worst.free())
-        way.meet(*parts[i].surface, parts[i].placed.T_camera_object, static_cast<int>(i), worst);
-    if (seen && worst.free())
-    {
-      seen->forEachPoint(
-          way.corners(), [&](const Sphere& points) { return way.mayMeet(points); },
-          [&](int u, int v, const Eigen::Vector3f& point) {
-            if (way.box().contains(point))
-              way.meet(
-                  point, ObstacleKind::Surface, -1, [&] { return held.pixels->at(u, v); }, worst);
-          });
-    }
-    return worst;
+      if (const Encounter met = way.meet(*parts[i].surface, parts[i].placed.T_camera_object, static_cast<int>(i));
+          !met.free())
+        return met;
+    if (!seen)
+      return {};
+    HeldPart::AmongPoints among(way, held.pixels->tolerance());
+    seen->forEachPoint(way.corners(), among);
+    return among.met();
   }
 
   std::string nameOf(const Encounter& met) const
@@ -227,19 +229,12 @@ struct Obstacles::Impl
     return clearance;
   }
 
-  bool staysClearOfBin(const ToolWay& way, std::size_t piece) const
-  {
-    return isWellInside(way.piece(piece).shape, T_bin_camera * way.T_camera_tool0(),
-                        T_bin_camera.linear() * way.motion_camera(), *bin, binLookAhead());
-  }
-
   /// Up to the first kind of obstacle to which a piece comes too near: what takes less time first, and parts before the
   /// cloud that shows them, because they tell more.
   void meetAll(ToolWay& way, std::size_t target, bool target_counts) const
   {
     Planes scratch;
-    if (bin &&
-        !way.meet([&](std::size_t i) { return staysClearOfBin(way, i) ? Encounter{} : meetBin(way.covered(i)); }))
+    if (!way.meet([&](std::size_t i) { return meetBin(way, i); }))
       return;
     if (target_counts && !way.meet([&](std::size_t i) {
           return way.piece(i).may_touch_target ? Encounter{} : meetPart(way.covered(i), target, true, scratch);
@@ -272,7 +267,6 @@ Obstacles::Obstacles(const DepthGrid* measured, const Bin* bin, std::vector<Plac
   if (bin)
   {
     requireFinite(*bin);
-    impl->bin = *bin;
     impl->T_bin_camera = bin->T_camera_bin.inverse();
     impl->sides = binSides(*bin);
   }

@@ -18,6 +18,9 @@ public:
 
   bool at(int u, int v) const;
 
+  /// What is so near to the part's surface is its own, metres.
+  float tolerance() const { return tolerance_; }
+
 private:
   bool isOnSurface(std::size_t pixel, int u, int v) const;
 

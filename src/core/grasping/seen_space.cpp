@@ -34,15 +34,9 @@ SeenSpace::SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstaclePa
   bridgeGaps(measured, executor);
   if (bin)
     hideBin(*bin, executor);
-  constexpr std::size_t STEPS = 3;
-  executor.forEach(STEPS, [&](std::size_t step) {
-    if (step == 0)
-      allowed_ = allowedDepth(unseen_entry_);
-    else if (step == 1)
-      allowed_own_ = allowedDepth(shadow_entry_);
-    else
-      boundBlocks();
-  });
+  const float farthest = boundBlocks(executor);
+  allowed_ = allowedDepth(unseen_entry_, farthest, executor);
+  allowed_own_ = allowedDepth(shadow_entry_, farthest, executor);
 }
 
 void SeenSpace::layOut(const DepthGrid& measured, const Bin* bin)
@@ -73,60 +67,60 @@ void SeenSpace::layOut(const DepthGrid& measured, const Bin* bin)
 }
 
 /// The largest depth within `entry` along rows and columns, and `entry` more: how far a body may go that may be off the
-/// free rays by that.
-std::vector<float> SeenSpace::allowedDepth(float entry) const
+/// free rays by that. \param farthest of the measured points, where `entry` spans the fewest pixels
+std::vector<float> SeenSpace::allowedDepth(float entry, float farthest, const Executor& executor) const
 {
-  float farthest = 0;
-  for (std::size_t i = 0; i < depth_.size(); ++i)
-    if (measured_[i] != 0)
-      farthest = std::max(farthest, depth_[i]);
   const int reach = farthest > 0 ? static_cast<int>(entry * std::sqrt(fx_ * fy_) / farthest) : 0;
+  const auto margin = static_cast<std::size_t>(reach);
   const auto stride = static_cast<std::size_t>(stride_);
   const auto width = static_cast<std::size_t>(width_);
-  const auto margin = static_cast<std::size_t>(reach);
-  const std::size_t window = 2 * margin + 1;
-  std::vector<float> allowed(depth_.size() + 2 * margin * stride, 0.0f);
-  std::vector<float> row(width + 2 * margin);
-  for (std::size_t v = 0; v < static_cast<std::size_t>(height_); ++v)
-  {
-    std::fill(row.begin(), row.end(), 0.0f);
-    std::copy_n(&depth_[v * stride], width, row.begin() + reach);
-    raiseToWindow(row.data(), row.size(), 1, window);
-    std::copy_n(row.begin(), width, &allowed[(v + margin) * stride]);
-  }
-  raiseToWindow(allowed.data(), allowed.size(), stride, window);
-  allowed.resize(depth_.size());
-  for (float& depth : allowed)
-    depth += entry;
+  const auto height = static_cast<std::size_t>(height_);
   // What fills up the last blocks is no part of the picture.
-  const auto rows = static_cast<std::size_t>(height_);
-  std::fill(allowed.begin() + static_cast<std::ptrdiff_t>(rows * stride), allowed.end(), FAR_AWAY + entry);
-  for (std::size_t v = 0; v < rows; ++v)
-    std::fill_n(&allowed[v * stride + width], stride - width, FAR_AWAY + entry);
+  std::vector<float> allowed(depth_.size(), FAR_AWAY + entry);
+  executor.forEachBundle(height, 32, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> row(width + 2 * margin);
+    for (std::size_t v = begin; v < end; ++v)
+    {
+      std::fill(row.begin(), row.end(), 0.0f);
+      std::copy_n(&depth_[v * stride], width, &row[margin]);
+      raiseToWindow(row.data(), row.size(), 1, 2 * margin + 1);
+      std::copy_n(row.data(), width, &allowed[v * stride]);
+    }
+  });
+  // Few columns at a time, so that all their rows stay in the processor's cache.
+  constexpr std::size_t STRIP = 32;
+  executor.forEachBundle(width, STRIP, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> strip((height + 2 * margin) * STRIP, 0.0f);
+    for (std::size_t v = 0; v < height; ++v)
+      std::copy_n(&allowed[v * stride + begin], end - begin, &strip[(v + margin) * STRIP]);
+    raiseToWindow(strip.data(), strip.size(), STRIP, 2 * margin + 1);
+    for (std::size_t v = 0; v < height; ++v)
+      for (std::size_t k = 0; k < end - begin; ++k)
+        allowed[v * stride + begin + k] = strip[v * STRIP + k] + entry;
+  });
   return allowed;
 }
 
-void SeenSpace::boundBlocks()
+/// \return the depth of the farthest measured point; 0: there is none
+float SeenSpace::boundBlocks(const Executor& executor)
 {
   const std::size_t blocks = depth_.size() / (BLOCK * BLOCK);
+  const int rows = static_cast<int>(depth_.size()) / stride_ / BLOCK;
+  std::vector<float> farthest(static_cast<std::size_t>(rows), 0.0f);
   block_nearest_.assign(blocks + BLOCK, FAR_AWAY);  // BLOCK of them are read at once
   block_points_.assign(blocks, Sphere{});
-  for (int v = 0; v < static_cast<int>(depth_.size()) / stride_; v += BLOCK)
+  executor.forEach(farthest.size(), [&](std::size_t row) {
+    const int v = static_cast<int>(row) * BLOCK;
     for (int u = 0; u < stride_; u += BLOCK)
     {
-      float nearest = FAR_AWAY;
-      float nearest_point = FAR_AWAY;
-      float farthest_point = 0;
-      for (int row = 0; row < BLOCK; ++row)
-        for (std::size_t i = index(u, v + row); i < index(u + BLOCK, v + row); ++i)
-        {
-          nearest = std::min(nearest, depth_[i]);
-          nearest_point = std::min(nearest_point, measured_[i] != 0 ? depth_[i] : FAR_AWAY);
-          farthest_point = std::max(farthest_point, measured_[i] != 0 ? depth_[i] : 0.0f);
-        }
-      block_nearest_[blockOf(u, v)] = nearest;
-      block_points_[blockOf(u, v)] = aroundPoints(u, v, nearest_point, farthest_point);
+      const BlockDepths of =
+          depthsOfBlock(&depth_[index(u, v)], &measured_[index(u, v)], static_cast<std::size_t>(stride_), FAR_AWAY);
+      block_nearest_[blockOf(u, v)] = of.nearest;
+      block_points_[blockOf(u, v)] = aroundPoints(u, v, of.nearest_point, of.farthest_point);
+      farthest[row] = std::max(farthest[row], of.farthest_point);
     }
+  });
+  return farthest.empty() ? 0.0f : *std::max_element(farthest.begin(), farthest.end());
 }
 
 /// Around the corners of the block at the nearest and the farthest depth; where the nearest is the farther: nothing.

@@ -24,18 +24,18 @@ public:
   /// The worst of measured points that are not the target's, and of unseen space.
   Encounter nearest(const BodySweep& body, const OwnPixels& target) const;
 
-  /// Calls visit(u, v, point) for the measured points in a rectangle that encloses the hull of some (camera frame), but
-  /// for those whose block is passed over: mayConcern(sphere), which encloses its points.
-  template <typename MayConcern, typename Visit>
-  void forEachPoint(const std::vector<Eigen::Vector3f>& hull, const MayConcern& mayConcern, const Visit& visit) const
+  /// Visits the measured points around the hull of some (camera frame), but for those that are passed over:
+  /// visitor.mayMeet(sphere), which encloses the points of a block of pixels, or
+  /// visitor.mayMeet(ray, step, depth), which returns a bit for each of BLOCK pixels side by side, and
+  /// visitor.meet(point).
+  template <typename Visitor>
+  void forEachPoint(const std::vector<Eigen::Vector3f>& hull, Visitor& visitor) const
   {
     const Window w = windowOf(hull, 0);
     for (int v = w.top / BLOCK * BLOCK; v < w.bottom; v += BLOCK)
       for (int u = w.left / BLOCK * BLOCK; u < w.right; u += BLOCK)
-        if (const Sphere& points = block_points_[blockOf(u, v)]; !(points.radius < 0) && mayConcern(points))
-          forEachPointOf(
-              {std::max(u, w.left), std::max(v, w.top), std::min(u + BLOCK, w.right), std::min(v + BLOCK, w.bottom)},
-              visit);
+        if (const Sphere& points = block_points_[blockOf(u, v)]; !(points.radius < 0) && visitor.mayMeet(points))
+          forEachPointOf(u, v, visitor);
   }
 
 private:
@@ -79,13 +79,17 @@ private:
   Eigen::Vector3f pointAt(int u, int v) const { return depth_[index(u, v)] * ray(u, v); }
   template <typename Points>
   Window windowOf(const Points& points, float margin) const;
-  template <typename Visit>
-  void forEachPointOf(const Window& w, const Visit& visit) const
+  /// Of the block that begins there.
+  template <typename Visitor>
+  void forEachPointOf(int u, int top, Visitor& visitor) const
   {
-    for (int v = w.top; v < w.bottom; ++v)
-      for (int u = w.left; u < w.right; ++u)
-        if (measured_[index(u, v)] != 0)
-          visit(u, v, pointAt(u, v));
+    for (int v = top; v < top + BLOCK; ++v)
+    {
+      const unsigned may_meet = visitor.mayMeet(ray(u, v), step_.x(), &depth_[index(u, v)]);
+      for (int k = 0; may_meet >> k != 0; ++k)
+        if ((may_meet >> k & 1) != 0 && measured_[index(u + k, v)] != 0)
+          visitor.meet(pointAt(u + k, v));
+    }
   }
 
   void layOut(const DepthGrid& measured, const Bin* bin);
@@ -96,8 +100,8 @@ private:
   void goOnBeyond(const Ends& ends, const Line& line, const std::vector<Ends>& crossing);
   void offer(std::size_t pixel, float depth, std::size_t hidden_by);
   void hideBin(const Bin& bin, const Executor& executor);
-  std::vector<float> allowedDepth(float entry) const;
-  void boundBlocks();
+  std::vector<float> allowedDepth(float entry, float farthest, const Executor& executor) const;
+  float boundBlocks(const Executor& executor);
   Sphere aroundPoints(int u, int v, float nearest, float farthest) const;
 
   int width_ = 0;  ///< of the picture, extended to where the bin may be

@@ -32,18 +32,12 @@ float depthAtRim(const Bin& bin, const Pose& T_bin_camera, float beside, const E
   return enters <= leaves ? static_cast<float>(enters) : beside;
 }
 
-/// Lines are worked on in bundles, each by one thread: task(first, end).
-template <typename Task>
-void forEachBundle(std::size_t count, const Executor& executor, const Task& task)
-{
-  constexpr std::size_t BUNDLE = 64;
-  executor.forEach((count + BUNDLE - 1) / BUNDLE,
-                   [&](std::size_t b) { task(b * BUNDLE, std::min(count, (b + 1) * BUNDLE)); });
-}
+constexpr std::size_t BUNDLE = 64;  // lines that one thread works on
+
 template <typename Task>
 void forEachLine(std::size_t count, const Executor& executor, const Task& task)
 {
-  forEachBundle(count, executor, [&](std::size_t first, std::size_t end) {
+  executor.forEachBundle(count, BUNDLE, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i)
       task(i);
   });
@@ -100,7 +94,7 @@ void SeenSpace::bridgeGaps(const DepthGrid& measured, const Executor& executor)
     if (measured_[begin + width - 1] != 0)
       rows[v].last = begin + width - 1;
   });
-  forEachBundle(width, executor, [&](std::size_t first, std::size_t end) {
+  executor.forEachBundle(width, BUNDLE, [&](std::size_t first, std::size_t end) {
     for (std::size_t u = first; u < end; ++u)
       if (measured_[row(0).begin + u] != 0)
         change(columns[u], row(0).begin + u, stride);

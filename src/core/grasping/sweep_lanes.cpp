@@ -118,6 +118,35 @@ BIN_PICKING_SIMD void raiseToHeights(const float* plane, const float* __restrict
   }
 }
 
+BIN_PICKING_SIMD void boundBlock(const float* depth, const std::uint8_t* measured, std::size_t stride, float far_away,
+                                 BlockDepths* bounds)
+{
+  float nearest[BLOCK];
+  float nearest_point[BLOCK];
+  float farthest_point[BLOCK];
+  for (int k = 0; k < BLOCK; ++k)
+  {
+    nearest[k] = nearest_point[k] = far_away;
+    farthest_point[k] = 0.0f;
+  }
+  for (int row = 0; row < BLOCK; ++row, depth += stride, measured += stride)
+    for (int k = 0; k < BLOCK; ++k)
+    {
+      const float point = measured[k] != 0 ? depth[k] : far_away;
+      const float farther = measured[k] != 0 ? depth[k] : 0.0f;
+      nearest[k] = depth[k] < nearest[k] ? depth[k] : nearest[k];
+      nearest_point[k] = point < nearest_point[k] ? point : nearest_point[k];
+      farthest_point[k] = farther > farthest_point[k] ? farther : farthest_point[k];
+    }
+  *bounds = {far_away, far_away, 0.0f};
+  for (int k = 0; k < BLOCK; ++k)
+  {
+    bounds->nearest = nearest[k] < bounds->nearest ? nearest[k] : bounds->nearest;
+    bounds->nearest_point = nearest_point[k] < bounds->nearest_point ? nearest_point[k] : bounds->nearest_point;
+    bounds->farthest_point = farthest_point[k] > bounds->farthest_point ? farthest_point[k] : bounds->farthest_point;
+  }
+}
+
 /// Four numbers a plane.
 const float* dataOf(const Planes& planes) { return planes.empty() ? nullptr : planes.front().data(); }
 }  // namespace
@@ -131,6 +160,13 @@ unsigned mayMeet(const Planes& planes, const Eigen::Vector3f& ray, const Eigen::
 unsigned meet(const Planes& planes, const Eigen::Vector3f& ray, const Eigen::Vector2f& step, float near, Lanes& lanes)
 {
   return meetRows(dataOf(planes), planes.size(), ray.data(), step.data(), near, &lanes);
+}
+
+BlockDepths depthsOfBlock(const float* depth, const std::uint8_t* measured, std::size_t stride, float far_away)
+{
+  BlockDepths bounds;
+  boundBlock(depth, measured, stride, far_away, &bounds);
+  return bounds;
 }
 
 void signedDistances(const Planes& planes, const float* x, const float* y, const float* z, std::size_t count,

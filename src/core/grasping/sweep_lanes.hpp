@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "body_sweep.hpp"
 
@@ -33,6 +34,16 @@ unsigned meet(const Planes& planes, const Eigen::Vector3f& ray, const Eigen::Vec
 /// Signed distances of points from a body; their number is a multiple of BLOCK.
 void signedDistances(const Planes& planes, const float* x, const float* y, const float* z, std::size_t count,
                      float* distances);
+
+/// Of a block of pixels.
+struct BlockDepths
+{
+  float nearest;         ///< of all
+  float nearest_point;   ///< of those measured; `far_away` if there is none
+  float farthest_point;  ///< 0 if there is none
+};
+/// \param depth, measured of the block's first pixel; rows are `stride` apart \param far_away no depth is larger
+BlockDepths depthsOfBlock(const float* depth, const std::uint8_t* measured, std::size_t stride, float far_away);
 
 /// Each value becomes the largest of `window` values, itself the first, each `step` after the one before. Values beyond
 /// the end do not count. In place.
