@@ -29,6 +29,7 @@ struct ObstacleParameters
   double target_clearance = 0.0015;
   double unseen_entry = 0.008;
   double shadow_entry = 0.012;
+  double unknown_entry = 0.002;
   double target_tolerance = 0.003;
   double max_drag = 0.0005;
 
@@ -57,9 +58,9 @@ struct Clearance
 {
   /// Signed, metres; < 0: how deep the body reaches in. Apart, a lower bound, exact where a face is nearest; infinite
   /// where nothing is near (5 mm more than bin_clearance for the bin; 4 mm for the rest). Of unseen space:
-  /// only what exceeds the entry allowed. Of the held part, which touches what it lies on as a rule: infinite where it
-  /// comes out; else how much deeper than at rest it gets into the first that holds it, negative: more than that is
-  /// only a bound.
+  /// what is left of the entry allowed, or exceeds it. Of the held part, which touches what it lies on as a rule:
+  /// infinite where it comes out; else how much deeper than at rest it gets into the first that holds it, negative:
+  /// more than that is only a bound.
   double distance = std::numeric_limits<double>::infinity();
   double required = 0;  ///< of that kind of obstacle, metres
   ObstacleKind kind = ObstacleKind::None;
@@ -93,8 +94,8 @@ struct ToolMotion
 /// - The bin: five solid boxes, against exact convex sweeps.
 /// - Detected parts: the points of their trained surface (hidden sides too) against exact convex sweeps.
 /// - The measured cloud: each measured point, and for each pixel's ray the space behind it. What no ray has passed is
-/// not
-///   free: a body may enter it by `unseen_entry` only, by `shadow_entry` where the target itself hides it.
+///   not free: a body may enter it by `unseen_entry` only, by `shadow_entry` where the target itself hides it, and by
+///   `unknown_entry` where neither a detected part nor the bin does: of what does, nobody knows the far side.
 /// - Pixels without a measurement are bridged by a straight line between the measured points left and right, and above
 ///   and below, whichever is nearer to the camera; nothing behind that sheet is free. Beyond the picture the inside of
 ///   the bin is unknown, and what a wall hides of it; the rest is free. That holds for rays up to two sizes of the

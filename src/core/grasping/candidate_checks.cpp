@@ -65,7 +65,10 @@ std::string passage(const Clearance& closest)
            " than it is at rest; no more is allowed (max_drag).";
   if (closest.kind == ObstacleKind::Unknown)
     return body + "reach " + toldApart(closest.distance, 0, millimetres).figure + " farther into the " +
-           closest.obstacle + " than is allowed (unseen_entry; shadow_entry behind the part itself).";
+           closest.obstacle +
+           " than is allowed (unseen_entry; shadow_entry behind the part itself, unknown_entry behind what is neither "
+           "a " +
+           "detected part nor the bin).";
   const auto [figure, limit] = toldApart(closest.distance, closest.required, millimetres);
   const std::string passes =
       closest.distance < 0 ? "reach " + figure + " into the " : "pass at " + figure + " from the ";

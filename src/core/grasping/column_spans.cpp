@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "../common/simd.hpp"
-#include "sweep_lanes.hpp"
 
 namespace bin_picking
 {
@@ -13,38 +12,74 @@ namespace
 {
 constexpr float NOTHING = -std::numeric_limits<float>::infinity();  // ahead and back of an empty column
 
-/// Columns and rows as in ColumnSpans; points are first + k * more by their depth, and origin.
-BIN_PICKING_SIMD unsigned meetColumns(const float* ahead, const float* back, int stride, const float* last,
-                                      const float* origin, const float* first, const float* more, const float* depth,
-                                      float distance, float length)
+/// What the loops need, as in ColumnSpans::View and ColumnSpans.
+struct Lookup
+{
+  const float* ahead;
+  const float* back;
+  int stride;
+  float last_column, last_row;
+  float distance, length;
+};
+
+/// \param x, y, along of points in columns \return a bit for each that comes within the distance of its column's span
+inline unsigned meetColumns(const Lookup& lookup, const float* x, const float* y, const float* along)
 {
   int cell[BLOCK];
-  float along[BLOCK];
   for (int k = 0; k < BLOCK; ++k)
   {
-    const auto step = static_cast<float>(k);
-    float x = depth[k] * (first[0] + step * more[0]) + origin[0];
-    float y = depth[k] * (first[1] + step * more[1]) + origin[1];
-    along[k] = depth[k] * (first[2] + step * more[2]) + origin[2];
-    x = x > 0.0f ? x : 0.0f;
-    y = y > 0.0f ? y : 0.0f;
-    x = x < last[0] ? x : last[0];
-    y = y < last[1] ? y : last[1];
-    cell[k] = static_cast<int>(y) * stride + static_cast<int>(x);
+    float column = x[k] > 0.0f ? x[k] : 0.0f;
+    float row = y[k] > 0.0f ? y[k] : 0.0f;
+    column = column < lookup.last_column ? column : lookup.last_column;
+    row = row < lookup.last_row ? row : lookup.last_row;
+    cell[k] = static_cast<int>(row) * lookup.stride + static_cast<int>(column);
   }
   int meets[BLOCK];
   for (int k = 0; k < BLOCK; ++k)
   {
-    const float ends = ahead[cell[k]] + distance - along[k];
-    const float begins = -back[cell[k]] - distance - along[k];
+    const float ends = lookup.ahead[cell[k]] + lookup.distance - along[k];
+    const float begins = -lookup.back[cell[k]] - lookup.distance - along[k];
     const float from = begins > 0.0f ? begins : 0.0f;
-    const float to = ends < length ? ends : length;
+    const float to = ends < lookup.length ? ends : lookup.length;
     meets[k] = from <= to ? 1 << k : 0;
   }
   int bits = 0;
   for (int k = 0; k < BLOCK; ++k)
     bits |= meets[k];
   return static_cast<unsigned>(bits);
+}
+
+/// The view of a ray, and how it changes from pixel to pixel.
+BIN_PICKING_SIMD unsigned meetPixels(const Lookup* lookup, const float* origin, const float* first, const float* more,
+                                     const float* depth)
+{
+  float x[BLOCK];
+  float y[BLOCK];
+  float along[BLOCK];
+  for (int k = 0; k < BLOCK; ++k)
+  {
+    const auto step = static_cast<float>(k);
+    x[k] = depth[k] * (first[0] + step * more[0]) + origin[0];
+    y[k] = depth[k] * (first[1] + step * more[1]) + origin[1];
+    along[k] = depth[k] * (first[2] + step * more[2]) + origin[2];
+  }
+  return meetColumns(*lookup, x, y, along);
+}
+
+/// \param turn by columns
+BIN_PICKING_SIMD unsigned meetPoints(const Lookup* lookup, const float* origin, const float* turn, const float* px,
+                                     const float* py, const float* pz)
+{
+  float x[BLOCK];
+  float y[BLOCK];
+  float along[BLOCK];
+  for (int k = 0; k < BLOCK; ++k)
+  {
+    x[k] = turn[0] * px[k] + turn[3] * py[k] + turn[6] * pz[k] + origin[0];
+    y[k] = turn[1] * px[k] + turn[4] * py[k] + turn[7] * pz[k] + origin[1];
+    along[k] = turn[2] * px[k] + turn[5] * py[k] + turn[8] * pz[k] + origin[2];
+  }
+  return meetColumns(*lookup, x, y, along);
 }
 }  // namespace
 
@@ -96,22 +131,29 @@ ColumnSpans ColumnSpans::within(float distance) const
   return wide;
 }
 
-ColumnSpans::PixelView ColumnSpans::seenBy(const Eigen::Isometry3f& T_object_camera) const
+ColumnSpans::View ColumnSpans::seenFrom(const Eigen::Isometry3f& T_object_other) const
 {
-  PixelView view;
+  View view;
   view.turn << across_ / CELL, direction_.transpose();
-  view.origin = view.turn * T_object_camera.translation();
-  view.turn = view.turn * T_object_camera.linear();
+  view.origin = view.turn * T_object_other.translation();
+  view.turn = view.turn * T_object_other.linear();
   view.origin.head<2>() -= low_ / CELL;
   return view;
 }
 
-unsigned ColumnSpans::meetOnWay(const PixelView& view, const Eigen::Vector3f& ray, float step, const float* depth,
+unsigned ColumnSpans::meetOnWay(const View& from_camera, const Eigen::Vector3f& ray, float step, const float* depth,
                                 float distance, float length) const
 {
-  const Eigen::Vector3f first = view.turn * ray;
-  const Eigen::Vector3f more = step * view.turn.col(0);
-  return meetColumns(ahead_.data(), back_.data(), static_cast<int>(stride_), last_.data(), view.origin.data(),
-                     first.data(), more.data(), depth, distance, length);
+  const Lookup lookup{ahead_.data(), back_.data(), static_cast<int>(stride_), last_.x(), last_.y(), distance, length};
+  const Eigen::Vector3f first = from_camera.turn * ray;
+  const Eigen::Vector3f more = step * from_camera.turn.col(0);
+  return meetPixels(&lookup, from_camera.origin.data(), first.data(), more.data(), depth);
+}
+
+unsigned ColumnSpans::meetOnWay(const View& view, const float* x, const float* y, const float* z, float distance,
+                                float length) const
+{
+  const Lookup lookup{ahead_.data(), back_.data(), static_cast<int>(stride_), last_.x(), last_.y(), distance, length};
+  return meetPoints(&lookup, view.origin.data(), view.turn.data(), x, y, z);
 }
 }  // namespace bin_picking

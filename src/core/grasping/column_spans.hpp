@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surface_blocks.hpp"
+#include "sweep_lanes.hpp"
 
 namespace bin_picking
 {
@@ -35,18 +36,21 @@ public:
     return {-back_[index(q)], ahead_[index(q)]};
   }
 
-  /// From a pixel and its depth to its column and how far along the direction it is: linear in both.
-  struct PixelView
+  /// From points in another frame to their columns and how far along the direction they are.
+  struct View
   {
     Eigen::Matrix3f turn;
     Eigen::Vector3f origin;
   };
-  PixelView seenBy(const Eigen::Isometry3f& T_object_camera) const;
+  View seenFrom(const Eigen::Isometry3f& T_object_other) const;
 
-  /// Which of BLOCK pixels side by side may come within the distance of a column's span on a way of that length along
-  /// the direction. \param ray of the first pixel, z = 1 \param step of the rays' x from pixel to pixel \param depth of
-  /// each, metres \return a bit for each
-  unsigned meetOnWay(const PixelView& view, const Eigen::Vector3f& ray, float step, const float* depth, float distance,
+  /// Which of BLOCK points may come within the distance of a column's span on a way of that length along the direction:
+  /// a bit for each. The points are those of pixels side by side. \param ray of the first pixel, z = 1 \param step of
+  /// the rays' x from pixel to pixel \param depth of each, metres
+  unsigned meetOnWay(const View& from_camera, const Eigen::Vector3f& ray, float step, const float* depth,
+                     float distance, float length) const;
+  /// The same of any points.
+  unsigned meetOnWay(const View& view, const float* x, const float* y, const float* z, float distance,
                      float length) const;
 
 private:

@@ -122,11 +122,21 @@ float HeldPart::deepening(const Eigen::Vector3f& point) const
 Encounter HeldPart::meet(const SurfaceBlocks& other, const Pose& T_camera_other, int index) const
 {
   const Eigen::Isometry3f T_object_other = T_object_camera_ * Eigen::Isometry3f(T_camera_other.cast<float>());
+  const ColumnSpans::View view = of_points_.columns.seenFrom(T_object_other);
   for (const SurfaceBlocks::Block& block : other.blocks())
-    if (!staysOutside({T_object_other * block.around.center, block.around.radius}))
-      for (std::size_t k = block.begin; k < block.end; ++k)
-        if (const float deeper = deepening(T_object_other * other.point(k)); deeper != 0)
-          return caught(deeper, ObstacleKind::Part, index, T_camera_other.cast<float>() * other.point(k));
+  {
+    if (staysOutside({T_object_other * block.around.center, block.around.radius}))
+      continue;
+    for (std::size_t first = block.begin; first < block.end; first += BLOCK)
+    {
+      const auto [x, y, z] = other.coordinates(first);
+      const unsigned may_meet = of_points_.columns.meetOnWay(view, x, y, z, of_points_.distance, length_);
+      for (std::size_t k = first; may_meet >> (k - first) != 0; ++k)
+        if ((may_meet >> (k - first) & 1) != 0)
+          if (const float deeper = deepening(T_object_other * other.point(k)); deeper != 0)
+            return caught(deeper, ObstacleKind::Part, index, T_camera_other.cast<float>() * other.point(k));
+    }
+  }
   return {};
 }
 
@@ -154,7 +164,7 @@ Encounter HeldPart::meetSide(const ConvexBody& side, ObstacleKind kind, int inde
 }
 
 HeldPart::AmongPoints::AmongPoints(const HeldPart& part, float own)
-    : part_(part), own_(own), view_(part.of_points_.columns.seenBy(part.T_object_camera_))
+    : part_(part), own_(own), view_(part.of_points_.columns.seenFrom(part.T_object_camera_))
 {}
 
 bool HeldPart::AmongPoints::mayMeet(const Sphere& points_camera) const

@@ -47,7 +47,7 @@ public:
   private:
     const HeldPart& part_;
     float own_;
-    ColumnSpans::PixelView view_;
+    ColumnSpans::View view_;
     Encounter met_;
   };
 

@@ -30,6 +30,11 @@ void ObstacleParameters::visit(ParameterVisitor& v)
   v.field({"shadow_entry", "m",
            "the same where only the part to be taken hides the space: fingers that straddle it get there", 0, 0.1},
           shadow_entry);
+  v.field(
+      {"unknown_entry", "m",
+       "the same where neither a detected part nor the bin hides the space: of what does, the far side is not known", 0,
+       0.1},
+      unknown_entry);
   v.field({"target_tolerance", "m",
            "measured points this close to the surface of the part to be taken are its own; larger tolerates errors of "
            "its pose and misses what touches it",

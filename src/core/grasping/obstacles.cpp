@@ -70,7 +70,6 @@ struct Obstacles::Impl
     const SurfaceBlocks* surface = nullptr;
     Eigen::Isometry3f T_camera_object;
     Eigen::AlignedBox3f box_camera;
-    std::optional<OwnPixels> pixels;  ///< with a cloud
   };
 
   ObstacleParameters parameters;
@@ -79,6 +78,7 @@ struct Obstacles::Impl
   std::optional<SeenSpace> seen;
   std::map<const TrainedModel*, std::unique_ptr<SurfaceBlocks>> surfaces;
   std::vector<Part> parts;
+  std::vector<OwnPixels> pixels;  ///< of the parts, with a cloud
 
   void checkTarget(std::size_t index) const
   {
@@ -97,7 +97,7 @@ struct Obstacles::Impl
       return;
     const DistanceField& field = part.placed.model->field;
     const float tolerance = std::min(static_cast<float>(parameters.target_tolerance), BAND_SHARE * field.band());
-    part.pixels.emplace(*seen, field, part.surface->box(), part.placed.T_camera_object, tolerance);
+    pixels.emplace_back(*seen, field, part.surface->box(), part.placed.T_camera_object, tolerance);
   }
 
   /// Distances from the bin beyond this are not asked for, metres.
@@ -187,7 +187,7 @@ struct Obstacles::Impl
         return met;
     if (!seen)
       return {};
-    HeldPart::AmongPoints among(way, held.pixels->tolerance());
+    HeldPart::AmongPoints among(way, pixels[target].tolerance());
     seen->forEachPoint(way.corners(), among);
     return among.met();
   }
@@ -242,8 +242,11 @@ struct Obstacles::Impl
       return;
     if (!way.meet([&](std::size_t i) { return meetOthers(way.covered(i), target, scratch); }))
       return;
-    if (seen)
-      way.meet([&](std::size_t i) { return seen->nearest(way.covered(i), *parts[target].pixels); });
+    if (!seen)
+      return;
+    const PixelOwners owners(*seen, pixels, target, sides, T_bin_camera,
+                             static_cast<float>(parameters.target_tolerance));
+    way.meet([&](std::size_t i) { return seen->nearest(way.covered(i), owners); });
   }
 
   Clearance sweep(const ToolShape& tool, const Pose& T_camera_tool0, const Eigen::Vector3d& motion_camera,

@@ -28,11 +28,8 @@ bool OwnPixels::at(int u, int v) const
 {
   if (!window_.contains(u, v))
     return false;
-  const std::size_t pixel = space_.index(u, v);
-  if (space_.measured_[pixel] != 0)
-    return isOnSurface(pixel, u, v);
-  const std::int32_t end = space_.hidden_by_[pixel];
-  return end >= 0 && isOnSurface(static_cast<std::size_t>(end), end % space_.stride_, end / space_.stride_);
+  const std::int32_t hider = space_.hiderOf(u, v);
+  return hider >= 0 && isOnSurface(static_cast<std::size_t>(hider), hider % space_.stride_, hider / space_.stride_);
 }
 
 bool OwnPixels::isOnSurface(std::size_t pixel, int u, int v) const
@@ -42,5 +39,18 @@ bool OwnPixels::isOnSurface(std::size_t pixel, int u, int v) const
     return false;
   const Eigen::Vector3f ray = corner_ + static_cast<float>(u) * right_ + static_cast<float>(v) * down_;
   return std::abs(field_.at(camera_ + depth * ray)) <= tolerance_;
+}
+
+bool PixelOwners::isKnown(int u, int v) const
+{
+  const std::int32_t hider = space_.hiderOf(u, v);
+  if (hider < 0)
+    return true;
+  if (std::any_of(parts_.begin(), parts_.end(), [&](const OwnPixels& part) { return part.at(u, v); }))
+    return true;
+  const Eigen::Vector3d point = (T_bin_camera_ * space_.pointOf(hider)).cast<double>();
+  return std::any_of(sides_.begin(), sides_.end(), [&](const BinSide& side) {
+    return side.box_bin.exteriorDistance(point) <= static_cast<double>(tolerance_);
+  });
 }
 }  // namespace bin_picking

@@ -28,7 +28,8 @@ SeenSpace::SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstaclePa
                      const Executor& executor)
     : surface_clearance_(static_cast<float>(parameters.surface_clearance)),
       unseen_entry_(static_cast<float>(parameters.unseen_entry)),
-      shadow_entry_(static_cast<float>(parameters.shadow_entry))
+      shadow_entry_(static_cast<float>(parameters.shadow_entry)),
+      unknown_entry_(static_cast<float>(parameters.unknown_entry))
 {
   layOut(measured, bin);
   bridgeGaps(measured, executor);
@@ -37,6 +38,7 @@ SeenSpace::SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstaclePa
   const float farthest = boundBlocks(executor);
   allowed_ = allowedDepth(unseen_entry_, farthest, executor);
   allowed_own_ = allowedDepth(shadow_entry_, farthest, executor);
+  allowed_unknown_ = allowedBehindUnknown();
 }
 
 void SeenSpace::layOut(const DepthGrid& measured, const Bin* bin)
@@ -98,6 +100,15 @@ std::vector<float> SeenSpace::allowedDepth(float entry, float farthest, const Ex
       for (std::size_t k = 0; k < end - begin; ++k)
         allowed[v * stride + begin + k] = strip[v * STRIP + k] + entry;
   });
+  return allowed;
+}
+
+/// What is not known may fill the whole gap beside it: its flank, seen at a grazing angle, was not measured either.
+std::vector<float> SeenSpace::allowedBehindUnknown() const
+{
+  std::vector<float> allowed(depth_.size());
+  for (std::size_t i = 0; i < depth_.size(); ++i)
+    allowed[i] = (hidden_by_[i] < 0 ? depth_[i] : depth_[static_cast<std::size_t>(hidden_by_[i])]) + unknown_entry_;
   return allowed;
 }
 

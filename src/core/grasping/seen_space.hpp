@@ -13,6 +13,7 @@
 namespace bin_picking
 {
 class OwnPixels;
+class PixelOwners;
 
 /// What the camera saw: per pixel's ray how far it is free. In the camera's own frame, so that each ray is exact and no
 /// shadow is cut by a grid of other axes. Immutable.
@@ -22,7 +23,15 @@ public:
   SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstacleParameters& parameters, const Executor& executor);
 
   /// The worst of measured points that are not the target's, and of unseen space.
-  Encounter nearest(const BodySweep& body, const OwnPixels& target) const;
+  Encounter nearest(const BodySweep& body, const PixelOwners& owners) const;
+
+  /// The measured pixel that hides what is behind a pixel: itself, or the nearer end of the bridge; -1: none does.
+  std::int32_t hiderOf(int u, int v) const
+  {
+    const std::size_t pixel = index(u, v);
+    return measured_[pixel] != 0 ? static_cast<std::int32_t>(pixel) : hidden_by_[pixel];
+  }
+  Eigen::Vector3f pointOf(std::int32_t pixel) const { return pointAt(pixel % stride_, pixel / stride_); }
 
   /// Visits the measured points around the hull of some (camera frame), but for those that are passed over:
   /// visitor.mayMeet(sphere), which encloses the points of a block of pixels, or
@@ -101,6 +110,7 @@ private:
   void offer(std::size_t pixel, float depth, std::size_t hidden_by);
   void hideBin(const Bin& bin, const Executor& executor);
   std::vector<float> allowedDepth(float entry, float farthest, const Executor& executor) const;
+  std::vector<float> allowedBehindUnknown() const;
   float boundBlocks(const Executor& executor);
   Sphere aroundPoints(int u, int v, float nearest, float farthest) const;
 
@@ -114,13 +124,15 @@ private:
   std::vector<float> depth_;                        ///< metres along z; bridged where not measured
   std::vector<std::uint8_t> measured_;              ///< 1: a measured point
   std::vector<std::int32_t>
-      hidden_by_;                     ///< of a bridged pixel: the measured one at the nearer end of the bridge; or -1
-  std::vector<float> allowed_;        ///< how far a body may go along the ray
-  std::vector<float> allowed_own_;    ///< the same for pixels of the target
-  std::vector<float> block_nearest_;  ///< smallest depth of each block of pixels
-  std::vector<Sphere> block_points_;  ///< around the measured points of each block; radius < 0: none
+      hidden_by_;                       ///< of a bridged pixel: the measured one at the nearer end of the bridge; or -1
+  std::vector<float> allowed_;          ///< how far a body may go along the ray
+  std::vector<float> allowed_own_;      ///< the same for pixels of the target
+  std::vector<float> allowed_unknown_;  ///< the same for pixels of nothing that is known
+  std::vector<float> block_nearest_;    ///< smallest depth of each block of pixels
+  std::vector<Sphere> block_points_;    ///< around the measured points of each block; radius < 0: none
   float surface_clearance_ = 0;
   float unseen_entry_ = 0;
   float shadow_entry_ = 0;
+  float unknown_entry_ = 0;
 };
 }  // namespace bin_picking

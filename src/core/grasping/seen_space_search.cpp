@@ -40,7 +40,7 @@ struct SeenSpace::Search
 {
   const SeenSpace& space;
   const BodySweep& body;
-  const OwnPixels& target;
+  const PixelOwners& owners;
   /// For whichever pixels the less is allowed: few blocks have to be looked at more closely.
   const std::vector<float>& least_allowed;
   Encounter surface;
@@ -53,7 +53,8 @@ struct SeenSpace::Search
     {
       const std::size_t first = space.index(u, v + row);
       std::memcpy(lanes.depth[row], &space.depth_[first], sizeof(lanes.depth[row]));
-      std::memcpy(lanes.allowed[row], &least_allowed[first], sizeof(lanes.allowed[row]));
+      for (int k = 0; k < BLOCK; ++k)  // what comes near to the end of what is allowed is told too
+        lanes.allowed[row][k] = least_allowed[first + static_cast<std::size_t>(k)] - LOOK_AHEAD;
     }
     const unsigned rows = meet(body.planes, space.ray(u, v), space.step_, LOOK_AHEAD, lanes);
     for (int row = 0; row < BLOCK; ++row)
@@ -66,27 +67,38 @@ struct SeenSpace::Search
     const std::size_t i = space.index(u, v);
     const bool is_near =
         distance < LOOK_AHEAD && space.measured_[i] != 0 && !(distance - space.surface_clearance_ >= surface.margin());
-    const bool is_beyond = beyond > 0 && !(-beyond >= unseen.margin());
+    const bool is_beyond = beyond > 0 && !(LOOK_AHEAD - beyond >= unseen.margin());
     if (!is_near && !is_beyond)
       return;
-    const bool own = target.at(u, v);
+    const bool own = owners.isOfTarget(u, v);
     if (is_near && !own)
       keepWorse(surface, {distance, space.surface_clearance_, ObstacleKind::Surface, -1, space.pointAt(u, v)});
+    if (!is_beyond)
+      return;
     const float reaches = allowed + beyond;
-    const float farther = reaches - (own ? space.allowed_own_ : space.allowed_)[i];
-    if (is_beyond && farther > 0)
-      keepWorse(unseen, {-farther, 0, ObstacleKind::Unknown, -1, reaches * space.ray(u, v)});
+    const auto farther = [&](const std::vector<float>& limits) { return reaches - limits[i]; };
+    const float least = own ? farther(space.allowed_own_) : farther(space.allowed_);
+    const float most = own ? least : std::max(least, farther(space.allowed_unknown_));
+    if (most <= -LOOK_AHEAD || -most >= unseen.margin())
+      return;
+    const float by = most == least || owners.isKnown(u, v) ? least : most;
+    if (by > -LOOK_AHEAD)
+      keepWorse(unseen, {-by, 0, ObstacleKind::Unknown, -1, reaches * space.ray(u, v)});
   }
 };
 
-Encounter SeenSpace::nearest(const BodySweep& body, const OwnPixels& target) const
+Encounter SeenSpace::nearest(const BodySweep& body, const PixelOwners& owners) const
 {
-  Search search{*this, body, target, unseen_entry_ < shadow_entry_ ? allowed_ : allowed_own_, {}, {}};
+  const std::vector<float>& least_of_others = unknown_entry_ < unseen_entry_ ? allowed_unknown_ : allowed_;
+  Search search{*this,  body,
+                owners, shadow_entry_ < std::min(unknown_entry_, unseen_entry_) ? allowed_own_ : least_of_others,
+                {},     {}};
   const Window w = windowOf(body.shape.vertices, LOOK_AHEAD);
   for (int v = w.top / BLOCK * BLOCK; v < w.bottom; v += BLOCK)
     for (int u = w.left / BLOCK * BLOCK; u < w.right; u += BLOCK * BLOCK)
     {
-      const unsigned blocks = mayMeet(body.planes, ray(u, v), step_, LOOK_AHEAD, &block_nearest_[blockOf(u, v)]);
+      const unsigned blocks =
+          mayMeet(body.planes, body.box.max().z(), ray(u, v), step_, LOOK_AHEAD, &block_nearest_[blockOf(u, v)]);
       for (int k = 0; blocks >> k != 0 && u + k * BLOCK < w.right; ++k)
         if (blocks >> k & 1)
           search.block(u + k * BLOCK, v);

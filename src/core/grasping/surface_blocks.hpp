@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -31,6 +32,12 @@ public:
   const std::vector<Sphere>& patches() const { return patches_; }
   /// \param index from a block's begin to before its end
   Eigen::Vector3f point(std::size_t index) const { return points_[index]; }
+  /// Of the points from there on, coordinate by coordinate. From a block's begin on they can be read BLOCK at a time:
+  /// behind its end the last one is repeated.
+  std::array<const float*, 3> coordinates(std::size_t index) const
+  {
+    return {&points_.x[index], &points_.y[index], &points_.z[index]};
+  }
   const Eigen::AlignedBox3f& box() const { return box_; }
 
 private:

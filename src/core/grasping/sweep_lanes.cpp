@@ -65,6 +65,14 @@ BIN_PICKING_SIMD unsigned meetRows(const float* planes, std::size_t count, const
   return rows;
 }
 
+bool reaches(float deepest, const float* nearest)
+{
+  int any = 0;
+  for (int k = 0; k < BLOCK; ++k)
+    any |= nearest[k] <= deepest ? 1 : 0;
+  return any != 0;
+}
+
 /// Along a line in the picture the inverse depth of a plane is linear, so that the corners of a block bound it.
 BIN_PICKING_SIMD unsigned meetBlocks(const float* planes, std::size_t count, const float* ray, const float* step,
                                      float around, const float* nearest)
@@ -151,9 +159,11 @@ BIN_PICKING_SIMD void boundBlock(const float* depth, const std::uint8_t* measure
 const float* dataOf(const Planes& planes) { return planes.empty() ? nullptr : planes.front().data(); }
 }  // namespace
 
-unsigned mayMeet(const Planes& planes, const Eigen::Vector3f& ray, const Eigen::Vector2f& step, float around,
-                 const float* nearest)
+unsigned mayMeet(const Planes& planes, float deepest, const Eigen::Vector3f& ray, const Eigen::Vector2f& step,
+                 float around, const float* nearest)
 {
+  if (!reaches(deepest + around, nearest))  // most of a gripper stays above everything
+    return 0;
   return meetBlocks(dataOf(planes), planes.size(), ray.data(), step.data(), around, nearest);
 }
 

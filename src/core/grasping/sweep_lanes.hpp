@@ -12,10 +12,11 @@ namespace bin_picking
 constexpr int BLOCK = 8;  ///< pixels that are computed at once, and rows of a block
 
 /// Which of BLOCK blocks of pixels, side by side, hold a ray on which a body, `around` larger, reaches as far as
-/// nearest[k] of the block; some on which it does not may be among them. \param ray of the first block's first pixel,
-/// z = 1 \param step of the rays from pixel to pixel \return a bit for each block
-unsigned mayMeet(const Planes& planes, const Eigen::Vector3f& ray, const Eigen::Vector2f& step, float around,
-                 const float* nearest);
+/// nearest[k] of the block; some on which it does not may be among them. \param deepest how far the body reaches along
+/// z \param ray of the first block's first pixel, z = 1 \param step of the rays from pixel to pixel \return a bit for
+/// each block
+unsigned mayMeet(const Planes& planes, float deepest, const Eigen::Vector3f& ray, const Eigen::Vector2f& step,
+                 float around, const float* nearest);
 
 /// A block of pixels and what a body does on their rays, row by row.
 struct Lanes
