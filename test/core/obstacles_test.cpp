@@ -520,6 +520,35 @@ TEST(Obstacles, PixelsWithoutMeasurementAreNeitherFreeNorSurface)
   EXPECT_TRUE(bridged.approach(finger, wayDown({0, 0, 0.059}, 0), 0).free());
 }
 
+TEST(Obstacles, AGapBesideWhatIsNotKnownIsHiddenInFull)
+{
+  // A wall of 60 mm, and beside it 30 mm that were not measured: bridged down to the floor.
+  const Vector3d place(0, 0.06, 0.03);
+  const Vector3d size(0.2, 0.08, 0.06);
+  DepthGrid gap = pictureOf({{place, size}});
+  for (int v = 0; v < gap.height; ++v)
+    for (int u = 0; u < gap.width; ++u)
+    {
+      const Vector3d p = binBelowCamera().T_camera_bin.inverse() * gap.point(gap.index(u, v)).cast<double>();
+      if (std::abs(p.x()) < 0.05 && p.y() > -0.01 && p.y() < 0.0205)
+        gap.invalidate(gap.index(u, v));
+    }
+  Gripper finger = twoFingers();
+  finger.bodies = {finger.bodies[1]};
+  finger.bodies[0].placements = {{}};
+  finger.bodies[0].shape = makeBox({0, 0, 0.16}, {0.02, 0.01, 0.08});
+  const ToolMotion way = wayDown({0, 0.005, 0.045}, 0);  // 10 mm from the wall, and above the bridge
+  const Bin bin = binBelowCamera();
+  std::vector<PlacedPart> parts = {{&block(), inCamera({0.13, -0.1, 0.015})}};
+  const Clearance unknown = Obstacles(&gap, &bin, parts, {}, Executor(1)).approach(finger, way, 0);
+  EXPECT_EQ(unknown.kind, ObstacleKind::Unknown);
+  EXPECT_NEAR(unknown.distance, -0.013, 1e-3) << "15 mm below the wall's top, of which 2 mm are allowed";
+  const TrainedModel wall = boxModel("wall", size);
+  parts.push_back({&wall, inCamera(place)});
+  const Clearance known = Obstacles(&gap, &bin, parts, {}, Executor(1)).approach(finger, way, 0);
+  EXPECT_TRUE(known.free()) << known.obstacle << " " << known.distance;
+}
+
 TEST(Obstacles, BeyondThePictureOnlyTheInsideOfTheBinIsUnknown)
 {
   // A picture of the bin's left half.

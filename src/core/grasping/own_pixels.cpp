@@ -29,7 +29,10 @@ bool OwnPixels::at(int u, int v) const
   if (!window_.contains(u, v))
     return false;
   const std::int32_t hider = space_.hiderOf(u, v);
-  return hider >= 0 && isOnSurface(static_cast<std::size_t>(hider), hider % space_.stride_, hider / space_.stride_);
+  if (hider < 0)
+    return false;
+  const auto [at_u, at_v] = space_.pixelOf(hider);
+  return isOnSurface(static_cast<std::size_t>(hider), at_u, at_v);
 }
 
 bool OwnPixels::isOnSurface(std::size_t pixel, int u, int v) const
@@ -46,9 +49,10 @@ bool PixelOwners::isKnown(int u, int v) const
   const std::int32_t hider = space_.hiderOf(u, v);
   if (hider < 0)
     return true;
-  if (std::any_of(parts_.begin(), parts_.end(), [&](const OwnPixels& part) { return part.at(u, v); }))
+  const auto [at_u, at_v] = space_.pixelOf(hider);  // a part's own gaps may lie beside its silhouette
+  if (std::any_of(parts_.begin(), parts_.end(), [u = at_u, v = at_v](const OwnPixels& part) { return part.at(u, v); }))
     return true;
-  const Eigen::Vector3d point = (T_bin_camera_ * space_.pointOf(hider)).cast<double>();
+  const Eigen::Vector3d point = (T_bin_camera_ * space_.pointAt(at_u, at_v)).cast<double>();
   return std::any_of(sides_.begin(), sides_.end(), [&](const BinSide& side) {
     return side.box_bin.exteriorDistance(point) <= static_cast<double>(tolerance_);
   });

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "bin_picking_perception/common/parallel.hpp"
@@ -31,7 +32,9 @@ public:
     const std::size_t pixel = index(u, v);
     return measured_[pixel] != 0 ? static_cast<std::int32_t>(pixel) : hidden_by_[pixel];
   }
-  Eigen::Vector3f pointOf(std::int32_t pixel) const { return pointAt(pixel % stride_, pixel / stride_); }
+  /// Column and row.
+  std::pair<int, int> pixelOf(std::int32_t index) const { return {index % stride_, index / stride_}; }
+  Eigen::Vector3f pointAt(int u, int v) const { return depth_[index(u, v)] * ray(u, v); }
 
   /// Visits the measured points around the hull of some (camera frame), but for those that are passed over:
   /// visitor.mayMeet(sphere), which encloses the points of a block of pixels, or
@@ -85,7 +88,6 @@ private:
   {
     return {(static_cast<float>(u) - cx_) * step_.x(), (static_cast<float>(v) - cy_) * step_.y(), 1.0f};
   }
-  Eigen::Vector3f pointAt(int u, int v) const { return depth_[index(u, v)] * ray(u, v); }
   template <typename Points>
   Window windowOf(const Points& points, float margin) const;
   /// Of the block that begins there.
