@@ -543,6 +543,19 @@ TEST(Obstacles, AGapBesideWhatIsNotKnownIsHiddenInFull)
   const Clearance unknown = Obstacles(&gap, &bin, parts, {}, Executor(1)).approach(finger, way, 0);
   EXPECT_EQ(unknown.kind, ObstacleKind::Unknown);
   EXPECT_NEAR(unknown.distance, -0.013, 1e-3) << "15 mm below the wall's top, of which 2 mm are allowed";
+  // Also in the middle of a wide gap, far from all that was measured.
+  DepthGrid wide = pictureOf({{place, size}});
+  for (int v = 0; v < wide.height; ++v)
+    for (int u = 0; u < wide.width; ++u)
+    {
+      const Vector3d p = binBelowCamera().T_camera_bin.inverse() * wide.point(wide.index(u, v)).cast<double>();
+      if (std::abs(p.x()) < 0.09 && p.y() > -0.08 && p.y() < 0.0205)
+        wide.invalidate(wide.index(u, v));
+    }
+  const ToolMotion middle = wayDown({0, -0.03, 0.045}, 0);
+  const Clearance amid = Obstacles(&wide, &bin, parts, {}, Executor(1)).approach(finger, middle, 0);
+  EXPECT_EQ(amid.kind, ObstacleKind::Unknown);
+  EXPECT_NEAR(amid.distance, -0.013, 1e-3);
   const TrainedModel wall = boxModel("wall", size);
   parts.push_back({&wall, inCamera(place)});
   const Clearance known = Obstacles(&gap, &bin, parts, {}, Executor(1)).approach(finger, way, 0);

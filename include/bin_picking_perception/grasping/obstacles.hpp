@@ -141,7 +141,7 @@ public:
   Clearance leaving(const ToolShape& closed, const ToolMotion& motion, std::size_t target) const;
 
   /// The target alone on the way out. It may touch what it touches at rest, but go no deeper into it than `max_drag`:
-  /// the clearance tells the first that holds it, or of nothing. The same for all grasps that retreat by the same
+  /// the clearance names the first thing that holds it, or none. The same for all grasps that retreat by the same
   /// motion (metres).
   Clearance pulledOut(const Eigen::Vector3d& motion_camera, std::size_t target) const;
 

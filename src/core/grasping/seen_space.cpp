@@ -35,10 +35,10 @@ SeenSpace::SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstaclePa
   bridgeGaps(measured, executor);
   if (bin)
     hideBin(*bin, executor);
+  allowed_unknown_ = allowedBehindUnknown();
   const float farthest = boundBlocks(executor);
   allowed_ = allowedDepth(unseen_entry_, farthest, executor);
   allowed_own_ = allowedDepth(shadow_entry_, farthest, executor);
-  allowed_unknown_ = allowedBehindUnknown();
 }
 
 void SeenSpace::layOut(const DepthGrid& measured, const Bin* bin)
@@ -124,9 +124,9 @@ float SeenSpace::boundBlocks(const Executor& executor)
     const int v = static_cast<int>(row) * BLOCK;
     for (int u = 0; u < stride_; u += BLOCK)
     {
-      const BlockDepths of =
-          depthsOfBlock(&depth_[index(u, v)], &measured_[index(u, v)], static_cast<std::size_t>(stride_), FAR_AWAY);
-      block_nearest_[blockOf(u, v)] = of.nearest;
+      const BlockDepths of = depthsOfBlock(&allowed_unknown_[index(u, v)], &depth_[index(u, v)],
+                                           &measured_[index(u, v)], static_cast<std::size_t>(stride_), FAR_AWAY);
+      block_nearest_[blockOf(u, v)] = of.least - unknown_entry_;  // where no limit begins earlier
       block_points_[blockOf(u, v)] = aroundPoints(u, v, of.nearest_point, of.farthest_point);
       farthest[row] = std::max(farthest[row], of.farthest_point);
     }

@@ -130,7 +130,7 @@ private:
   std::vector<float> allowed_;          ///< how far a body may go along the ray
   std::vector<float> allowed_own_;      ///< the same for pixels of the target
   std::vector<float> allowed_unknown_;  ///< the same for pixels of nothing that is known
-  std::vector<float> block_nearest_;    ///< smallest depth of each block of pixels
+  std::vector<float> block_nearest_;    ///< at which depth the first ray of each block of pixels may end
   std::vector<Sphere> block_points_;    ///< around the measured points of each block; radius < 0: none
   float surface_clearance_ = 0;
   float unseen_entry_ = 0;

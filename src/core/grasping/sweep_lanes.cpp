@@ -126,30 +126,31 @@ BIN_PICKING_SIMD void raiseToHeights(const float* plane, const float* __restrict
   }
 }
 
-BIN_PICKING_SIMD void boundBlock(const float* depth, const std::uint8_t* measured, std::size_t stride, float far_away,
-                                 BlockDepths* bounds)
+BIN_PICKING_SIMD void boundBlock(const float* values, const float* depth, const std::uint8_t* measured,
+                                 std::size_t stride, float far_away, BlockDepths* bounds)
 {
-  float nearest[BLOCK];
+  float least[BLOCK];
   float nearest_point[BLOCK];
   float farthest_point[BLOCK];
   for (int k = 0; k < BLOCK; ++k)
   {
-    nearest[k] = nearest_point[k] = far_away;
+    least[k] = values[k];
+    nearest_point[k] = far_away;
     farthest_point[k] = 0.0f;
   }
-  for (int row = 0; row < BLOCK; ++row, depth += stride, measured += stride)
+  for (int row = 0; row < BLOCK; ++row, values += stride, depth += stride, measured += stride)
     for (int k = 0; k < BLOCK; ++k)
     {
       const float point = measured[k] != 0 ? depth[k] : far_away;
       const float farther = measured[k] != 0 ? depth[k] : 0.0f;
-      nearest[k] = depth[k] < nearest[k] ? depth[k] : nearest[k];
+      least[k] = values[k] < least[k] ? values[k] : least[k];
       nearest_point[k] = point < nearest_point[k] ? point : nearest_point[k];
       farthest_point[k] = farther > farthest_point[k] ? farther : farthest_point[k];
     }
-  *bounds = {far_away, far_away, 0.0f};
+  *bounds = {least[0], far_away, 0.0f};
   for (int k = 0; k < BLOCK; ++k)
   {
-    bounds->nearest = nearest[k] < bounds->nearest ? nearest[k] : bounds->nearest;
+    bounds->least = least[k] < bounds->least ? least[k] : bounds->least;
     bounds->nearest_point = nearest_point[k] < bounds->nearest_point ? nearest_point[k] : bounds->nearest_point;
     bounds->farthest_point = farthest_point[k] > bounds->farthest_point ? farthest_point[k] : bounds->farthest_point;
   }
@@ -172,10 +173,11 @@ unsigned meet(const Planes& planes, const Eigen::Vector3f& ray, const Eigen::Vec
   return meetRows(dataOf(planes), planes.size(), ray.data(), step.data(), near, &lanes);
 }
 
-BlockDepths depthsOfBlock(const float* depth, const std::uint8_t* measured, std::size_t stride, float far_away)
+BlockDepths depthsOfBlock(const float* values, const float* depth, const std::uint8_t* measured, std::size_t stride,
+                          float far_away)
 {
   BlockDepths bounds;
-  boundBlock(depth, measured, stride, far_away, &bounds);
+  boundBlock(values, depth, measured, stride, far_away, &bounds);
   return bounds;
 }
 

@@ -39,12 +39,14 @@ void signedDistances(const Planes& planes, const float* x, const float* y, const
 /// Of a block of pixels.
 struct BlockDepths
 {
-  float nearest;         ///< of all
+  float least;           ///< of all values
   float nearest_point;   ///< of those measured; `far_away` if there is none
   float farthest_point;  ///< 0 if there is none
 };
-/// \param depth, measured of the block's first pixel; rows are `stride` apart \param far_away no depth is larger
-BlockDepths depthsOfBlock(const float* depth, const std::uint8_t* measured, std::size_t stride, float far_away);
+/// \param values any, depth, measured: of the block's first pixel; rows are `stride` apart \param far_away no depth is
+/// larger
+BlockDepths depthsOfBlock(const float* values, const float* depth, const std::uint8_t* measured, std::size_t stride,
+                          float far_away);
 
 /// Each value becomes the largest of `window` values, itself the first, each `step` after the one before. Values beyond
 /// the end do not count. In place.
