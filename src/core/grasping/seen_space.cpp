@@ -35,7 +35,7 @@ SeenSpace::SeenSpace(const DepthGrid& measured, const Bin* bin, const ObstaclePa
   bridgeGaps(measured, executor);
   if (bin)
     hideBin(*bin, executor);
-  allowed_unknown_ = allowedBehindUnknown();
+  allowed_unknown_ = allowedBehindUnknown(executor);
   const float farthest = boundBlocks(executor);
   allowed_ = allowedDepth(unseen_entry_, farthest, executor);
   allowed_own_ = allowedDepth(shadow_entry_, farthest, executor);
@@ -104,11 +104,14 @@ std::vector<float> SeenSpace::allowedDepth(float entry, float farthest, const Ex
 }
 
 /// What is not known may fill the whole gap beside it: its flank, seen at a grazing angle, was not measured either.
-std::vector<float> SeenSpace::allowedBehindUnknown() const
+std::vector<float> SeenSpace::allowedBehindUnknown(const Executor& executor) const
 {
+  constexpr std::size_t AT_A_TIME = 1 << 14;
   std::vector<float> allowed(depth_.size());
-  for (std::size_t i = 0; i < depth_.size(); ++i)
-    allowed[i] = (hidden_by_[i] < 0 ? depth_[i] : depth_[static_cast<std::size_t>(hidden_by_[i])]) + unknown_entry_;
+  executor.forEachBundle(depth_.size(), AT_A_TIME, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      allowed[i] = (hidden_by_[i] < 0 ? depth_[i] : depth_[static_cast<std::size_t>(hidden_by_[i])]) + unknown_entry_;
+  });
   return allowed;
 }
 

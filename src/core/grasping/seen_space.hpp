@@ -112,7 +112,7 @@ private:
   void offer(std::size_t pixel, float depth, std::size_t hidden_by);
   void hideBin(const Bin& bin, const Executor& executor);
   std::vector<float> allowedDepth(float entry, float farthest, const Executor& executor) const;
-  std::vector<float> allowedBehindUnknown() const;
+  std::vector<float> allowedBehindUnknown(const Executor& executor) const;
   float boundBlocks(const Executor& executor);
   Sphere aroundPoints(int u, int v, float nearest, float farthest) const;
 
