@@ -22,10 +22,6 @@ struct BinSide
 /// The walls stand on the floor and end at the rim; the floor reaches under them.
 std::vector<BinSide> binSides(const Bin& bin);
 
-/// clearance() of a body (camera frame) from a side, in less time for a box's corners follow from its axes.
-/// \param T_bin_camera of the side's bin
-double clearance(const ConvexBody& body, const BinSide& side, const Pose& T_bin_camera);
-
 /// Whether boxes along the same axes are farther apart than the distance along one of them.
 inline bool areApart(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b, double distance)
 {

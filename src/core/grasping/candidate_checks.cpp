@@ -66,8 +66,8 @@ std::string passage(const Clearance& closest)
   if (closest.kind == ObstacleKind::Unknown)
     return body + "reach " + toldApart(closest.distance, 0, millimetres).figure + " farther into the " +
            closest.obstacle +
-           " than is allowed (unseen_entry; shadow_entry behind the part itself, unknown_entry behind what is no "
-           "part).";
+           " than is allowed (unseen_entry; shadow_entry behind the part itself, unknown_entry behind what was not "
+           "recognised).";
   const auto [figure, limit] = toldApart(closest.distance, closest.required, millimetres);
   const std::string passes =
       closest.distance < 0 ? "reach " + figure + " into the " : "pass at " + figure + " from the ";

@@ -32,6 +32,23 @@ double reach(const std::vector<Vector3d>& vertices, const Vector3d& axis)
   return farthest;
 }
 
+/// How far a body reaches along an axis to either side.
+struct Extent
+{
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  Extent(const std::vector<Vector3d>& vertices, const Vector3d& axis)
+  {
+    for (const Vector3d& v : vertices)
+    {
+      const double along = axis.dot(v);
+      low = std::min(low, along);
+      high = std::max(high, along);
+    }
+  }
+};
+
 bool isAmong(const std::vector<Vector4d>& planes, const Vector3d& normal)
 {
   return std::any_of(planes.begin(), planes.end(), [&](const Vector4d& plane) {
@@ -192,9 +209,9 @@ double clearance(const ConvexBody& a, const ConvexBody& b)
       if (length < MIN_CROSS_PRODUCT)
         continue;
       const Vector3d axis = cross / length;
-      const double above = -reach(b.vertices, -axis) - reach(a.vertices, axis);
-      const double below = -reach(a.vertices, -axis) - reach(b.vertices, axis);
-      clearance = std::max({clearance, above, below});
+      const Extent of_a(a.vertices, axis);
+      const Extent of_b(b.vertices, axis);
+      clearance = std::max({clearance, of_b.low - of_a.high, of_a.low - of_b.high});
     }
   return clearance;
 }

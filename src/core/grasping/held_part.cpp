@@ -98,7 +98,7 @@ bool HeldPart::staysOutside(const Sphere& points) const
 }
 
 /// By how much the point gets deeper into the part than it is at the start, where that is more than max_drag for the
-/// first time; 0: nowhere. No step is so long that it could miss that.
+/// first time; 0: nowhere. What the shortest step may miss is less than half of it.
 float HeldPart::deepening(const Eigen::Vector3f& point) const
 {
   const Stretch near = stretchNear(point, of_points_);

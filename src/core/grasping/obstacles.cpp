@@ -118,7 +118,7 @@ struct Obstacles::Impl
       const BinSide& side = sides[i];
       if (areApart(covered, side.box_bin, binLookAhead()))
         continue;
-      keepWorse(worst, {static_cast<float>(bin_picking::clearance(way.covered(piece).shape, side, T_bin_camera)),
+      keepWorse(worst, {static_cast<float>(bin_picking::clearance(way.covered(piece).shape, side.box)),
                         static_cast<float>(parameters.bin_clearance), kindOf(side), static_cast<int>(i)});
     }
     return worst;

@@ -41,8 +41,6 @@ struct SeenSpace::Search
   const SeenSpace& space;
   const BodySweep& body;
   const PixelOwners& owners;
-  /// For whichever pixels the less is allowed: few blocks have to be looked at more closely.
-  const std::vector<float>& least_allowed;
   Encounter surface;
   Encounter unseen;
 
@@ -53,8 +51,13 @@ struct SeenSpace::Search
     {
       const std::size_t first = space.index(u, v + row);
       std::memcpy(lanes.depth[row], &space.depth_[first], sizeof(lanes.depth[row]));
-      for (int k = 0; k < BLOCK; ++k)  // what comes near to the end of what is allowed is told too
-        lanes.allowed[row][k] = least_allowed[first + static_cast<std::size_t>(k)] - LOOK_AHEAD;
+      for (int k = 0; k < BLOCK; ++k)
+      {
+        // Whose the pixel is, is asked later and of few; what comes near to the end of what is allowed is told too.
+        const std::size_t i = first + static_cast<std::size_t>(k);
+        const float least = std::min({space.allowed_[i], space.allowed_own_[i], space.allowed_unknown_[i]});
+        lanes.allowed[row][k] = least - LOOK_AHEAD;
+      }
     }
     const unsigned rows = meet(body.planes, space.ray(u, v), space.step_, LOOK_AHEAD, lanes);
     for (int row = 0; row < BLOCK; ++row)
@@ -89,10 +92,7 @@ struct SeenSpace::Search
 
 Encounter SeenSpace::nearest(const BodySweep& body, const PixelOwners& owners) const
 {
-  const std::vector<float>& least_of_others = unknown_entry_ < unseen_entry_ ? allowed_unknown_ : allowed_;
-  Search search{*this,  body,
-                owners, shadow_entry_ < std::min(unknown_entry_, unseen_entry_) ? allowed_own_ : least_of_others,
-                {},     {}};
+  Search search{*this, body, owners, {}, {}};
   const Window w = windowOf(body.shape.vertices, LOOK_AHEAD);
   for (int v = w.top / BLOCK * BLOCK; v < w.bottom; v += BLOCK)
     for (int u = w.left / BLOCK * BLOCK; u < w.right; u += BLOCK * BLOCK)
