@@ -119,25 +119,45 @@ float HeldPart::deepening(const Eigen::Vector3f& point) const
   return 0;
 }
 
+HeldPart::Neighbour::Neighbour(const HeldPart& part, const SurfaceBlocks& other, const Pose& T_camera_other)
+    : surface(other),
+      T_object_other(part.T_object_camera_ * Eigen::Isometry3f(T_camera_other.cast<float>())),
+      to_points(part.of_points_.columns.seenFrom(T_object_other)),
+      to_spheres(part.of_spheres_.columns.seenFrom(T_object_other))
+{}
+
 Encounter HeldPart::meet(const SurfaceBlocks& other, const Pose& T_camera_other, int index) const
 {
-  const Eigen::Isometry3f T_object_other = T_object_camera_ * Eigen::Isometry3f(T_camera_other.cast<float>());
-  const ColumnSpans::View view = of_points_.columns.seenFrom(T_object_other);
-  for (const SurfaceBlocks::Block& block : other.blocks())
+  const Neighbour neighbour(*this, other, T_camera_other);
+  const std::vector<SurfaceBlocks::Block>& blocks = other.blocks();
+  for (std::size_t first = 0; first < blocks.size(); first += BLOCK)
   {
-    if (staysOutside({T_object_other * block.around.center, block.around.radius}))
-      continue;
-    for (std::size_t first = block.begin; first < block.end; first += BLOCK)
-    {
-      const auto [x, y, z] = other.coordinates(first);
-      const unsigned may_meet = of_points_.columns.meetOnWay(view, x, y, z, of_points_.distance, length_);
-      for (std::size_t k = first; may_meet >> (k - first) != 0; ++k)
-        if ((may_meet >> (k - first) & 1) != 0)
-          if (const float deeper = deepening(T_object_other * other.point(k)); deeper != 0)
-            return caught(deeper, ObstacleKind::Part, index, T_camera_other.cast<float>() * other.point(k));
-    }
+    const auto [x, y, z] = other.middles(first);
+    const unsigned near = of_spheres_.columns.meetOnWay(neighbour.to_spheres, x, y, z, of_spheres_.distance, length_);
+    const std::size_t end = std::min<std::size_t>(first + BLOCK, blocks.size());
+    for (std::size_t b = first; b < end; ++b)
+      if ((near >> (b - first) & 1) != 0 || blocks[b].around.radius > LARGE)
+        if (const std::optional<Caught> caught = meetBlock(neighbour, blocks[b]))
+          return encounter(caught->deepening, ObstacleKind::Part, index,
+                           T_camera_other.cast<float>() * other.point(caught->point));
   }
   return {};
+}
+
+std::optional<HeldPart::Caught> HeldPart::meetBlock(const Neighbour& other, const SurfaceBlocks::Block& block) const
+{
+  if (staysOutside({other.T_object_other * block.around.center, block.around.radius}))
+    return std::nullopt;
+  for (std::size_t first = block.begin; first < block.end; first += BLOCK)
+  {
+    const auto [x, y, z] = other.surface.coordinates(first);
+    const unsigned near = of_points_.columns.meetOnWay(other.to_points, x, y, z, of_points_.distance, length_);
+    for (std::size_t k = first; near >> (k - first) != 0; ++k)
+      if ((near >> (k - first) & 1) != 0)
+        if (const float deeper = deepening(other.T_object_other * other.surface.point(k)); deeper != 0)
+          return Caught{deeper, k};
+  }
+  return std::nullopt;
 }
 
 Encounter HeldPart::meetSide(const ConvexBody& side, ObstacleKind kind, int index) const
@@ -160,7 +180,7 @@ Encounter HeldPart::meetSide(const ConvexBody& side, ObstacleKind kind, int inde
   Eigen::Vector3f ignored;
   surface_.deepest(toObject(side), at_rest, ignored);
   const float deeper = at_rest - on_the_way;
-  return deeper > max_drag_ ? caught(deeper, kind, index, T_object_camera_.inverse() * contact) : Encounter{};
+  return deeper > max_drag_ ? encounter(deeper, kind, index, T_object_camera_.inverse() * contact) : Encounter{};
 }
 
 HeldPart::AmongPoints::AmongPoints(const HeldPart& part, float own)
@@ -184,6 +204,6 @@ void HeldPart::AmongPoints::meet(const Eigen::Vector3f& point_camera)
   if (!met_.free() || std::abs(part_.field_.at(point)) <= own_)
     return;
   if (const float deeper = part_.deepening(point); deeper != 0)
-    met_ = part_.caught(deeper, ObstacleKind::Surface, -1, point_camera);
+    met_ = part_.encounter(deeper, ObstacleKind::Surface, -1, point_camera);
 }
 }  // namespace bin_picking

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <optional>
+
 #include "bin_picking_perception/model/distance_field.hpp"
 #include "body_sweep.hpp"
 #include "column_spans.hpp"
@@ -72,7 +74,23 @@ private:
   Stretch stretchInBox(const Eigen::Vector3f& center, float radius) const;
   bool staysOutside(const Sphere& points) const;
   float deepening(const Eigen::Vector3f& point_object) const;
-  Encounter caught(float deepening, ObstacleKind kind, int index, const Eigen::Vector3f& point_camera) const
+  /// Another part that rests, seen from this one.
+  struct Neighbour
+  {
+    Neighbour(const HeldPart& part, const SurfaceBlocks& other, const Pose& T_camera_other);
+
+    const SurfaceBlocks& surface;
+    Eigen::Isometry3f T_object_other;
+    ColumnSpans::View to_points;   ///< the columns of of_points_
+    ColumnSpans::View to_spheres;  ///< and of of_spheres_
+  };
+  struct Caught
+  {
+    float deepening;
+    std::size_t point;  ///< of the neighbour's surface
+  };
+  std::optional<Caught> meetBlock(const Neighbour& other, const SurfaceBlocks::Block& block) const;
+  Encounter encounter(float deepening, ObstacleKind kind, int index, const Eigen::Vector3f& point_camera) const
   {
     return {-deepening, -max_drag_, kind, index, point_camera};
   }

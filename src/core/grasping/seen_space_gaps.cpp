@@ -47,11 +47,18 @@ void forEachLine(std::size_t count, const Executor& executor, const Task& task)
 template <typename Visit>
 void forEachDifference(const std::uint8_t* a, const std::uint8_t* b, std::size_t count, const Visit& visit)
 {
-  constexpr std::size_t AT_ONCE = 8;
-  for (std::size_t k = 0; k < count; k += AT_ONCE)
+  using AtOnce = std::uint64_t;
+  const auto areEqual = [&](std::size_t k) {
+    AtOnce of_a;
+    AtOnce of_b;
+    std::memcpy(&of_a, a + k, sizeof(of_a));
+    std::memcpy(&of_b, b + k, sizeof(of_b));
+    return of_a == of_b;
+  };
+  for (std::size_t k = 0; k < count; k += sizeof(AtOnce))
   {
-    const std::size_t end = std::min(k + AT_ONCE, count);
-    if (std::memcmp(a + k, b + k, end - k) == 0)
+    const std::size_t end = std::min(k + sizeof(AtOnce), count);
+    if (end - k == sizeof(AtOnce) && areEqual(k))
       continue;
     for (std::size_t i = k; i < end; ++i)
       if (a[i] != b[i])

@@ -38,6 +38,11 @@ public:
   {
     return {&points_.x[index], &points_.y[index], &points_.z[index]};
   }
+  /// The same of the middles of the blocks from there on; what is behind the last block is no block's.
+  std::array<const float*, 3> middles(std::size_t block) const
+  {
+    return {&centers_.x[block], &centers_.y[block], &centers_.z[block]};
+  }
   const Eigen::AlignedBox3f& box() const { return box_; }
 
 private:
