@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/kd_tree.hpp"
 #include "bin_picking_perception/evaluation/pose_error.hpp"
 #include "bin_picking_perception/refinement/verification.hpp"
 #include "experiments.hpp"
@@ -39,8 +40,8 @@ double addOf(const TrainedModel& model, const Pose& estimate, const Pose& truth)
 /// Equation 9 with the points that truly are the object's, so that no method chooses its own denominator.
 void rate(Json& run, const Detection& found, const TrainedModel& model, const PointScene& scene, double match_distance)
 {
-  run["rate"] =
-      matchingRate(model.surface, found.T_camera_object, thinned(scene.of_object, RATED_POINTS), match_distance);
+  run["rate"] = matchingRate(KdTree(model.surface.points), found.T_camera_object,
+                             thinned(scene.of_object, RATED_POINTS), match_distance);
   run["claimed_rate"] = found.matching_rate;
   run["add"] = addOf(model, found.T_camera_object, scene.T_camera_object) / model.diameter;
   const PoseError error = poseError(found.T_camera_object, scene.T_camera_object, model.symmetry, model.center);

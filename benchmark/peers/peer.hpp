@@ -33,7 +33,8 @@ struct PeerScene
   pcl::PointCloud<pcl::PointXYZ> cloud;  ///< as a driver hands it over; empty for depth pictures
   DepthGrid grid;                        ///< the same, or the depth picture
   OrientedPoints points;                 ///< of the region that is searched, with the normals that all programs share
-  OrientedPoints fine;  ///< the same, averaged in cubes of 1 % of the diameter: what the peers' ICP aligns to
+  OrientedPoints
+      fine;  ///< the same, averaged in cubes of 1 % of the diameter: what the peers' ICP and `ours, points only` get
   std::optional<Bin> bin;
   int max_poses = 1;       ///< that are wanted
   double max_seconds = 0;  ///< CPU time after which no further pose is begun
@@ -72,7 +73,7 @@ public:
 std::unique_ptr<Peer> makeOpenCv();        ///< cv::ppf_match_3d
 std::unique_ptr<Peer> makePcl();           ///< pcl::PPFRegistration
 std::unique_ptr<Peer> makeOurs();          ///< Detector::detect on the organized cloud
-std::unique_ptr<Peer> makeOursOnPoints();  ///< Detector::match on the points and normals that the peers get
+std::unique_ptr<Peer> makeOursOnPoints();  ///< Detector::match on the points and normals that the peers' ICP gets
 
 struct PeerProgram
 {

@@ -29,7 +29,7 @@ public:
   PeerResult find(const PeerScene& scene) override
   {
     const double start = cpuSeconds();
-    const DetectionResult found = on_points_ ? detector_->match(scene.points, false) : detect(scene);
+    const DetectionResult found = on_points_ ? detector_->match(scene.fine, false) : detect(scene);
     const double seconds = cpuSeconds() - start;
     PeerResult result;
     result.icp_seconds = seconds * refinementShare(found);

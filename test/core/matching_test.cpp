@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <gtest/gtest.h>
 
+#include "bin_picking_perception/common/kd_tree.hpp"
 #include "bin_picking_perception/matching/clustering.hpp"
 #include "bin_picking_perception/matching/voting.hpp"
 #include "bin_picking_perception/refinement/icp.hpp"
@@ -49,10 +50,10 @@ TEST_P(AnyFeature, recoversAnyRotationAndAnyTranslation)
 
     IcpParameters icp;
     icp.max_iterations = 60;
-    const IcpResult refined = icpPointToPoint(model.surface, scene, found, 2 * LEAF, icp);
+    const IcpResult refined = icpPointToPoint(KdTree(model.surface.points), scene, found, 2 * LEAF, icp);
     EXPECT_LT((refined.T_camera_object * model.center - T * model.center).norm(), 0.15 * LEAF);
     EXPECT_LT(test::rotationError(refined.T_camera_object, T), 0.02);
-    EXPECT_GT(matchingRate(model.surface, refined.T_camera_object, scene.points, 0.005), 0.999);
+    EXPECT_GT(matchingRate(KdTree(model.surface.points), refined.T_camera_object, scene.points, 0.005), 0.999);
   }
 }
 
@@ -315,13 +316,13 @@ TEST(IcpPointToPoint, isExactOnItsOwnPointsAndRigidOnPlanes)
   start.translation() += 0.001 * test::unitVector(random);
   IcpParameters icp;
   icp.max_iterations = 100;
-  const IcpResult result = icpPointToPoint(model, transformed(model, T), start, 0.01, icp);
+  const IcpResult result = icpPointToPoint(KdTree(model.points), transformed(model, T), start, 0.01, icp);
   EXPECT_TRUE(result.converged);
   EXPECT_LT((result.T_camera_object.translation() - T.translation()).norm(), 1e-5);
   EXPECT_LT(result.rms, 1e-6);
 
   const OrientedPoints flat = test::plane(0.05, 400);
-  const IcpResult on_plane = icpPointToPoint(flat, transformed(flat, T), T, 0.01, icp);
+  const IcpResult on_plane = icpPointToPoint(KdTree(flat.points), transformed(flat, T), T, 0.01, icp);
   EXPECT_NEAR(on_plane.T_camera_object.linear().determinant(), 1, 1e-9)
       << "a reflection fits a plane as well, but is no pose";
 }
@@ -331,7 +332,7 @@ TEST(IcpPointToPoint, withoutCorrespondencesThePoseStaysAndRmsIsNan)
   const OrientedPoints model = test::lBlock(0.002, 1);
   Pose far = Pose::Identity();
   far.translation().x() = 1;
-  const IcpResult result = icpPointToPoint(model, model, far, 0.01, {});
+  const IcpResult result = icpPointToPoint(KdTree(model.points), model, far, 0.01, {});
   EXPECT_TRUE(std::isnan(result.rms));
   EXPECT_EQ(result.iterations, 0);
   EXPECT_TRUE(result.T_camera_object.matrix() == far.matrix());
@@ -339,7 +340,7 @@ TEST(IcpPointToPoint, withoutCorrespondencesThePoseStaysAndRmsIsNan)
 
 TEST(MatchingRate, countsTheShareWithinTheDistance)
 {
-  const OrientedPoints model = test::plane(0.1, 20000);
+  const KdTree model(test::plane(0.1, 20000).points);
   std::vector<Eigen::Vector3f> scene = {{0, 0, 0.001f}, {0, 0, 0.004f}, {0, 0, 0.006f}, {0, 0, 0.1f}};
   EXPECT_DOUBLE_EQ(matchingRate(model, Pose::Identity(), scene, 0.005), 0.5);
   EXPECT_DOUBLE_EQ(matchingRate(model, Pose::Identity(), {}, 0.005), 0);

@@ -13,6 +13,8 @@
 
 namespace bin_picking
 {
+class KdTree;
+
 enum class IcpMethod
 {
   None,
@@ -42,8 +44,8 @@ struct IcpResult
 };
 
 /// Point-to-point ICP of scene points against model points. \param max_distance metres
-IcpResult icpPointToPoint(const OrientedPoints& model, const OrientedPoints& scene, const Pose& initial,
-                          double max_distance, const IcpParameters& parameters);
+IcpResult icpPointToPoint(const KdTree& model, const OrientedPoints& scene, const Pose& initial, double max_distance,
+                          const IcpParameters& parameters);
 
 /// What was measured where a part may be, camera frame.
 struct MeasuredPart

@@ -12,6 +12,8 @@
 
 namespace bin_picking
 {
+class KdTree;
+
 struct VerificationParameters
 {
   bool enabled = true;  // false: only the matching rate decides, as in the paper
@@ -115,6 +117,6 @@ std::vector<int> coveredCells(const std::vector<int>& pixels, int grid_width, in
 double binPenetration(const OrientedPoints& surface, const Pose& T_camera_object, const Bin& bin);
 
 /// Equation 9: the share of `object_points` that have a model point within `distance`. 0 for no points.
-double matchingRate(const OrientedPoints& model_surface, const Pose& T_camera_object,
+double matchingRate(const KdTree& model_surface, const Pose& T_camera_object,
                     const std::vector<Eigen::Vector3f>& object_points, double distance);
 }  // namespace bin_picking

@@ -44,7 +44,7 @@ Pose refineRoughly(const Hypothetical& pose, const PreparedScene& scene, const T
   switch (icp.method)
   {
     case IcpMethod::PointToPoint:
-      return icpPointToPoint(model.surface, pose.region->samples, pose.T_camera_object,
+      return icpPointToPoint(*scene.model_surface, pose.region->samples, pose.T_camera_object,
                              icp.max_distance * model.parameters.leaf, icp)
           .T_camera_object;
     case IcpMethod::DistanceField:
@@ -187,9 +187,10 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
   }
   detection.visible_fraction = evidence.visibleFraction();
   detection.rms = evidence.rms;
-  detection.matching_rate = pose.region->is_candidate ? matchingRate(model.surface, T, pose.region->samples.points,
-                                                                     verification.match_distance)
-                                                      : evidence.matchingRate();
+  detection.matching_rate =
+      pose.region->is_candidate
+          ? matchingRate(*scene.model_surface, T, pose.region->samples.points, verification.match_distance)
+          : evidence.matchingRate();
   detection.score = verification.enabled ? confidence(quality) : detection.matching_rate;
   judge(detection, quality, verification);
   assessed.cells = coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell);

@@ -4,7 +4,9 @@
 #include <limits>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/kd_tree.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/refinement/icp.hpp"
 #include "bin_picking_perception/scene/surface_resampling.hpp"
 #include "stages.hpp"
 
@@ -12,40 +14,76 @@ namespace bin_picking
 {
 namespace
 {
-/// Scene points inside the part's bounding box, grown by `margin`, at a pose.
-std::vector<Eigen::Vector3f> pointsInBox(const OrientedPoints& scene, const TrainedModel& model,
-                                         const Pose& T_camera_object, double margin)
+/// Indices of scene points inside the part's bounding box, grown by `margin`, at a pose.
+std::vector<int> inBox(const OrientedPoints& scene, const TrainedModel& model, const Pose& T_camera_object,
+                       double margin)
 {
   const Eigen::Isometry3f T_object_camera = T_camera_object.inverse().cast<float>();
   const Eigen::Vector3f center = model.center.cast<float>();
   const Eigen::Vector3f half = (model.size / 2).cast<float>() + Eigen::Vector3f::Constant(static_cast<float>(margin));
-  std::vector<Eigen::Vector3f> inside;
-  for (const auto& point : scene.points)
-    if (((T_object_camera * point - center).cwiseAbs() - half).maxCoeff() <= 0)
-      inside.push_back(point);
+  std::vector<int> inside;
+  for (std::size_t i = 0; i < scene.size(); ++i)
+    if (((T_object_camera * scene.points[i] - center).cwiseAbs() - half).maxCoeff() <= 0)
+      inside.push_back(static_cast<int>(i));
   return inside;
 }
 
-Detection assess(const PoseCluster& cluster, const OrientedPoints& scene, const TrainedModel& model,
-                 const DetectorParameters& parameters, bool scene_is_part)
+/// Evenly as many as refinement needs of what lies around the part.
+MeasuredPart pointsNear(const OrientedPoints& scene, const TrainedModel& model, const Pose& T_camera_object)
 {
-  const IcpParameters& icp = parameters.icp;
+  constexpr std::size_t ICP_POINTS = 1500;
+  const std::vector<int> inside = inBox(scene, model, T_camera_object, static_cast<double>(model.field.band()));
+  const std::size_t step = std::max<std::size_t>(1, inside.size() / ICP_POINTS);
+  std::vector<int> chosen;
+  for (std::size_t k = 0; k < inside.size(); k += step)
+    chosen.push_back(inside[k]);
+  return {select(scene, chosen), {}};
+}
+
+/// What poses are held against.
+struct PointScene
+{
+  const TrainedModel& model;
+  KdTree surface;                 ///< of the model
+  const OrientedPoints& samples;  ///< as far apart as the points of the model
+  const OrientedPoints& dense;    ///< all that was given
+};
+
+IcpResult refine(const Pose& T_camera_object, const PointScene& scene, const DetectorParameters& parameters)
+{
+  const TrainedModel& model = scene.model;
+  IcpParameters icp = parameters.icp;
+  if (icp.method == IcpMethod::PointToPoint)
+    return icpPointToPoint(scene.surface, scene.samples, T_camera_object, icp.max_distance * model.parameters.leaf,
+                           icp);
+  // As in a grid: half of the iterations with few points, the others with all and a narrow gate.
+  icp.max_iterations = (parameters.icp.max_iterations + 1) / 2;
+  const IcpResult rough = icpDistanceField(model, {scene.samples, {}}, T_camera_object, icp);
+  icp.max_iterations = parameters.icp.max_iterations / 2;
+  icp.max_distance = icp.min_distance;
+  return icpDistanceField(model, pointsNear(scene.dense, model, rough.T_camera_object), rough.T_camera_object, icp);
+}
+
+Detection assess(const Hypothetical& pose, const PointScene& scene, const DetectorParameters& parameters,
+                 bool scene_is_part)
+{
+  const TrainedModel& model = scene.model;
   const double distance = parameters.verification.match_distance;
   Detection detection;
   detection.part = model.name;
-  detection.votes = cluster.votes;
-  detection.T_camera_object = cluster.T_camera_object;
+  detection.votes = pose.votes;
+  detection.T_camera_object = pose.T_camera_object;
   detection.rms = std::numeric_limits<double>::quiet_NaN();  // without ICP nothing was fitted
-  if (icp.method != IcpMethod::None)
+  if (parameters.icp.method != IcpMethod::None)
   {
-    const IcpResult refined =
-        icpPointToPoint(model.surface, scene, cluster.T_camera_object, icp.max_distance * model.parameters.leaf, icp);
+    const IcpResult refined = refine(pose.T_camera_object, scene, parameters);
     detection.T_camera_object = refined.T_camera_object;
     detection.rms = refined.rms;
   }
   const auto object_points =
-      scene_is_part ? scene.points : pointsInBox(scene, model, detection.T_camera_object, distance);
-  detection.matching_rate = matchingRate(model.surface, detection.T_camera_object, object_points, distance);
+      scene_is_part ? scene.samples.points
+                    : select(scene.samples, inBox(scene.samples, model, detection.T_camera_object, distance)).points;
+  detection.matching_rate = matchingRate(scene.surface, detection.T_camera_object, object_points, distance);
   // Without a camera nothing says what should be seen: half of the part, as in a scan from one side, counts as all.
   const double matched = detection.matching_rate * static_cast<double>(object_points.size());
   detection.visible_fraction = std::min(1.0, matched / (0.5 * static_cast<double>(model.points.size())));
@@ -88,10 +126,9 @@ DetectionResult Detector::match(const OrientedPoints& scene, bool scene_is_part)
   const auto poses = searchPoses(regions, nullptr, model, parameters_, deadline, executor_, clock, result.partial);
   constexpr std::size_t MAX_REFINED = 10;
   std::vector<Detection> detections(std::min(poses.size(), MAX_REFINED));
-  executor_.forEach(detections.size(), [&](std::size_t i) {
-    detections[i] = assess({poses[i].T_camera_object, poses[i].votes, 0}, regions.front().samples, model, parameters_,
-                           scene_is_part);
-  });
+  const PointScene searched{model, KdTree(model.surface.points), regions.front().samples, scene};
+  executor_.forEach(detections.size(),
+                    [&](std::size_t i) { detections[i] = assess(poses[i], searched, parameters_, scene_is_part); });
   clock.lap("refinement");
   std::stable_sort(detections.begin(), detections.end(),
                    [](const Detection& a, const Detection& b) { return a.score > b.score; });

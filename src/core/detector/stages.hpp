@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bin_picking_perception/common/deadline.hpp"
+#include "bin_picking_perception/common/kd_tree.hpp"
 #include "bin_picking_perception/detector.hpp"
 #include "bin_picking_perception/matching/clustering.hpp"
 #include "bin_picking_perception/refinement/verification.hpp"
@@ -27,7 +28,8 @@ struct PreparedScene
   std::vector<Eigen::Vector3f> normals;  ///< per pixel of the working grid
   double noise = 0;                      ///< of the depth, metres
   SceneSamples samples;
-  std::optional<Bin> bin;  ///< as given with the request
+  std::optional<Bin> bin;               ///< as given with the request
+  std::optional<KdTree> model_surface;  ///< the model's; only where nearest neighbours in it are asked for
 };
 
 /// Where poses are searched: samples that take part, and those of them that vote. One per candidate target in the

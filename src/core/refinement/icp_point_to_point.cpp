@@ -20,10 +20,10 @@ struct Correspondences
 };
 
 /// Where a point has to be to have a correspondence: most of a bin is elsewhere. With room for what rounding moves.
-Eigen::AlignedBox3f boxAround(const OrientedPoints& model, double max_distance)
+Eigen::AlignedBox3f boxAround(const std::vector<Eigen::Vector3f>& model, double max_distance)
 {
   Eigen::AlignedBox3f box;
-  for (const auto& point : model.points)
+  for (const auto& point : model)
     box.extend(point);
   const Eigen::Vector3f around = Eigen::Vector3f::Constant(1.001f * static_cast<float>(max_distance));
   return {box.min() - around, box.max() + around};
@@ -84,22 +84,21 @@ double motion(const Correspondences& pairs, const Pose& before, const Pose& afte
 }
 }  // namespace
 
-IcpResult icpPointToPoint(const OrientedPoints& model, const OrientedPoints& scene, const Pose& initial,
-                          double max_distance, const IcpParameters& parameters)
+IcpResult icpPointToPoint(const KdTree& model, const OrientedPoints& scene, const Pose& initial, double max_distance,
+                          const IcpParameters& parameters)
 {
   constexpr std::size_t MIN_PAIRS = 6;
-  const KdTree tree(model.points);
-  const Eigen::AlignedBox3f around = boxAround(model, max_distance);
+  const Eigen::AlignedBox3f around = boxAround(model.points(), max_distance);
   IcpResult result;
   result.T_camera_object = initial;
-  Correspondences pairs = findCorrespondences(tree, around, scene, initial, max_distance);
+  Correspondences pairs = findCorrespondences(model, around, scene, initial, max_distance);
   while (result.iterations < parameters.max_iterations && pairs.object.size() >= MIN_PAIRS && !result.converged)
   {
     const Pose next = alignPairs(pairs);
     result.converged = motion(pairs, result.T_camera_object, next) < parameters.convergence;
     result.T_camera_object = next;
     ++result.iterations;
-    pairs = findCorrespondences(tree, around, scene, next, max_distance);
+    pairs = findCorrespondences(model, around, scene, next, max_distance);
   }
   result.correspondences = static_cast<int>(pairs.object.size());
   result.rms = pairs.object.empty() ? std::numeric_limits<double>::quiet_NaN()

@@ -224,16 +224,15 @@ double binPenetration(const OrientedPoints& surface, const Pose& T_camera_object
   return static_cast<double>(deepest);
 }
 
-double matchingRate(const OrientedPoints& model_surface, const Pose& T_camera_object,
+double matchingRate(const KdTree& model_surface, const Pose& T_camera_object,
                     const std::vector<Eigen::Vector3f>& object_points, double distance)
 {
   if (object_points.empty())
     return 0;
-  const KdTree tree(model_surface.points);
   const Eigen::Isometry3f T_object_camera = T_camera_object.inverse().cast<float>();
   std::size_t matched = 0;
   for (const auto& point : object_points)
-    matched += tree.nearest(T_object_camera * point, static_cast<float>(distance)).index >= 0;
+    matched += model_surface.nearest(T_object_camera * point, static_cast<float>(distance)).index >= 0;
   return static_cast<double>(matched) / static_cast<double>(object_points.size());
 }
 }  // namespace bin_picking

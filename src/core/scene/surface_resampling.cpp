@@ -142,7 +142,9 @@ std::vector<float> allRoundCurvature(const OrientedPoints& points, const Oriente
                                      CurvatureMeasure measure, double radius, const Executor& executor)
 {
   constexpr int MIN_NEIGHBOURS = 8;
-  return estimateCurvature(points, dense, measure, radius, OPPOSITE_WALL_ANGLE, MIN_NEIGHBOURS, executor);
+  constexpr double SPACING = 0.125;  // of the radius: some 200 neighbours, as a fit to a grid sees; more tell no more
+  const OrientedPoints support = voxelDownsample(dense, SPACING * radius);
+  return estimateCurvature(points, support, measure, radius, OPPOSITE_WALL_ANGLE, MIN_NEIGHBOURS, executor);
 }
 
 OrientedPoints resampleSurface(const OrientedPoints& dense, const SurfaceResampling& resampling,
