@@ -8,6 +8,7 @@
 #include "../src/core/matching/pair_quantizer.hpp"
 #include "bin_picking_perception/matching/clustering.hpp"
 #include "bin_picking_perception/matching/voting.hpp"
+#include "bin_picking_perception/refinement/verification.hpp"
 #include "kernels.hpp"
 
 namespace bin_picking::kernels
@@ -170,6 +171,7 @@ VotingResult voteInScene()
 
 void voting(benchmark::State& state)
 {
+  workbench();  // else the first iteration makes it
   VotingStatistics statistics;
   for (auto _ : state)
     statistics = voteInScene().statistics;
@@ -188,6 +190,29 @@ void clustering(benchmark::State& state)
   countPer(state, "hypothesis", hypotheses.size());
 }
 BENCHMARK(clustering)->Unit(benchmark::kMillisecond);
+
+/// One part alone, as a scan without a grid: from points with normals to refined poses; the counters are stages, ms.
+void matchOnePart(benchmark::State& state)
+{
+  const Workbench& bench = workbench();
+  const Pose& T = bench.poses.front();
+  OrientedPoints scan;
+  for (const std::uint32_t i : visiblePoints(*bench.model, T))
+  {
+    scan.points.push_back((T * bench.model->surface.points[i].cast<double>()).cast<float>());
+    scan.normals.push_back((T.linear() * bench.model->surface.normals[i].cast<double>()).cast<float>());
+  }
+  DetectorParameters parameters = bench.parameters;
+  parameters.num_threads = 1;
+  const Detector detector({bench.model}, parameters);
+  DetectionResult result;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(result = detector.match(scan, false));
+  state.counters["points"] = static_cast<double>(scan.size());
+  for (const StageTime& stage : result.timing)
+    state.counters[stage.stage] = 1e3 * stage.seconds;
+}
+BENCHMARK(matchOnePart)->Unit(benchmark::kMillisecond);
 
 /// All pairs, also those that no view sees together: what a pair costs does not depend on that.
 void tableBuild(benchmark::State& state)

@@ -25,6 +25,8 @@ class PointCloud;
 
 namespace bin_picking
 {
+class KdTree;
+
 /// A value together with the threshold it was held against.
 struct Criterion
 {
@@ -124,7 +126,7 @@ public:
   DetectionResult detect(const DepthGrid& grid, const Request& request) const;
 
   /// The (one) part in an unorganized oriented point set: no camera grid, no segmentation; voting, clustering, ICP
-  /// (point to point, since there is no grid, unless switched off) and matching rate only. Best first. For whole scans
+  /// (icp.method, without edges, since there is no grid) and matching rate only. Best first. For whole scans
   /// and for the paper's public data sets. \param scene_is_part true: every scene point belongs to the part, so that
   /// all count in Equation 9; false: only those
   ///   inside the part's bounding box at the pose
@@ -141,5 +143,6 @@ private:
   std::vector<std::shared_ptr<const TrainedModel>> models_;
   DetectorParameters parameters_;
   Executor executor_;
+  std::vector<std::shared_ptr<const KdTree>> surfaces_;  ///< of the models, where nearest neighbours are asked for
 };
 }  // namespace bin_picking

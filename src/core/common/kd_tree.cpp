@@ -24,6 +24,24 @@ struct PointsAdaptor
     return false;
   }
 };
+/// What nanoflann asks of a set of results: all within a radius, only their indices.
+struct IndicesWithin
+{
+  using DistanceType = float;
+
+  std::vector<int>& indices;
+  float squared_radius;
+
+  bool full() const { return true; }
+  float worstDist() const { return squared_radius; }
+  bool addPoint(float squared_distance, int index)
+  {
+    if (squared_distance < squared_radius)
+      indices.push_back(index);
+    return true;
+  }
+};
+
 using Tree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointsAdaptor>, PointsAdaptor, 3, int>;
 }  // namespace
@@ -49,13 +67,8 @@ void KdTree::radiusSearch(const Eigen::Vector3f& query, float radius, std::vecto
   indices.clear();
   if (index_->adaptor.points.empty())
     return;
-  std::vector<std::pair<int, float>> matches;
-  nanoflann::SearchParams parameters;
-  parameters.sorted = false;
-  index_->tree.radiusSearch(query.data(), radius * radius, matches, parameters);
-  indices.reserve(matches.size());
-  for (const auto& match : matches)
-    indices.push_back(match.first);
+  IndicesWithin found{indices, radius * radius};
+  index_->tree.findNeighbors(found, query.data(), nanoflann::SearchParams());
   std::sort(indices.begin(), indices.end());
 }
 

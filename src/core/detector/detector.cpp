@@ -18,6 +18,8 @@ Detector::Detector(std::vector<std::shared_ptr<const TrainedModel>> models, Dete
   DetectorParameters copy = parameters_;
   for (const auto& entry : listParameters(visitor(copy)))
     setParameter(visitor(copy), entry.path, entry.value);
+  for (const auto& model : models_)
+    surfaces_.push_back(std::make_shared<const KdTree>(model->surface.points));
 }
 
 std::vector<std::size_t> Detector::requestedModels(const Request& request) const
@@ -102,6 +104,7 @@ DetectionResult Detector::detectIn(const PointView& points, const Request& reque
       continue;
     }
     clock.count("points", measured);
+    scene.model_surface = surfaces_[index].get();
     Segmentation segmentation;
     executor_.forEach(2, [&](std::size_t side) {  // neither needs the other
       if (side == 0)

@@ -44,55 +44,91 @@ MeasuredPart pointsNear(const OrientedPoints& scene, const TrainedModel& model, 
 struct PointScene
 {
   const TrainedModel& model;
-  KdTree surface;                 ///< of the model
-  const OrientedPoints& samples;  ///< as far apart as the points of the model
-  const OrientedPoints& dense;    ///< all that was given
+  const KdTree& surface;        ///< of the model
+  const MeasuredPart samples;   ///< as far apart as the points of the model
+  const OrientedPoints& dense;  ///< all that was given
+  bool is_part;                 ///< and nothing else
 };
 
-IcpResult refine(const Pose& T_camera_object, const PointScene& scene, const DetectorParameters& parameters)
+/// Half of the iterations, with few points: enough to see which poses are worth more. The nearest neighbours of the
+/// paper take all.
+IcpResult refineRoughly(const Pose& T_camera_object, const PointScene& scene, IcpParameters icp)
 {
   const TrainedModel& model = scene.model;
-  IcpParameters icp = parameters.icp;
   if (icp.method == IcpMethod::PointToPoint)
-    return icpPointToPoint(scene.surface, scene.samples, T_camera_object, icp.max_distance * model.parameters.leaf,
-                           icp);
-  // As in a grid: half of the iterations with few points, the others with all and a narrow gate.
-  icp.max_iterations = (parameters.icp.max_iterations + 1) / 2;
-  const IcpResult rough = icpDistanceField(model, {scene.samples, {}}, T_camera_object, icp);
-  icp.max_iterations = parameters.icp.max_iterations / 2;
-  icp.max_distance = icp.min_distance;
-  return icpDistanceField(model, pointsNear(scene.dense, model, rough.T_camera_object), rough.T_camera_object, icp);
+    return icpPointToPoint(scene.surface, scene.samples.surface, T_camera_object,
+                           icp.max_distance * model.parameters.leaf, icp);
+  icp.max_iterations = (icp.max_iterations + 1) / 2;
+  return icpDistanceField(model, scene.samples, T_camera_object, icp);
 }
 
-Detection assess(const Hypothetical& pose, const PointScene& scene, const DetectorParameters& parameters,
-                 bool scene_is_part)
+/// The other half, with all points and a narrow gate.
+IcpResult polish(const Pose& T_camera_object, const PointScene& scene, IcpParameters icp)
 {
-  const TrainedModel& model = scene.model;
-  const double distance = parameters.verification.match_distance;
+  icp.max_iterations /= 2;
+  icp.max_distance = icp.min_distance;
+  return icpDistanceField(scene.model, pointsNear(scene.dense, scene.model, T_camera_object), T_camera_object, icp);
+}
+
+/// What the points say of the pose.
+void rate(Detection& detection, const PointScene& scene, const VerificationParameters& parameters)
+{
+  const OrientedPoints& samples = scene.samples.surface;
+  const double distance = parameters.match_distance;
+  const auto object_points =
+      scene.is_part ? samples.points
+                    : select(samples, inBox(samples, scene.model, detection.T_camera_object, distance)).points;
+  detection.matching_rate = matchingRate(scene.surface, detection.T_camera_object, object_points, distance);
+  // Without a camera nothing says what should be seen: half of the part, as in a scan from one side, counts as all.
+  const double matched = detection.matching_rate * static_cast<double>(object_points.size());
+  detection.visible_fraction = std::min(1.0, matched / (0.5 * static_cast<double>(scene.model.points.size())));
+  detection.score = detection.matching_rate * std::sqrt(detection.visible_fraction);
+  detection.criteria = {{"matching_rate", detection.matching_rate, parameters.min_matching_rate, false}};
+  detection.rejection = detection.criteria.front().passed() ? "" : failureText(detection.criteria.front());
+}
+
+Detection assess(const Hypothetical& pose, const PointScene& scene, const DetectorParameters& parameters)
+{
   Detection detection;
-  detection.part = model.name;
+  detection.part = scene.model.name;
   detection.votes = pose.votes;
   detection.T_camera_object = pose.T_camera_object;
   detection.rms = std::numeric_limits<double>::quiet_NaN();  // without ICP nothing was fitted
   if (parameters.icp.method != IcpMethod::None)
   {
-    const IcpResult refined = refine(pose.T_camera_object, scene, parameters);
+    const IcpResult refined = refineRoughly(pose.T_camera_object, scene, parameters.icp);
     detection.T_camera_object = refined.T_camera_object;
     detection.rms = refined.rms;
   }
-  const auto object_points =
-      scene_is_part ? scene.samples.points
-                    : select(scene.samples, inBox(scene.samples, model, detection.T_camera_object, distance)).points;
-  detection.matching_rate = matchingRate(scene.surface, detection.T_camera_object, object_points, distance);
-  // Without a camera nothing says what should be seen: half of the part, as in a scan from one side, counts as all.
-  const double matched = detection.matching_rate * static_cast<double>(object_points.size());
-  detection.visible_fraction = std::min(1.0, matched / (0.5 * static_cast<double>(model.points.size())));
-  detection.score = detection.matching_rate * std::sqrt(detection.visible_fraction);
-  detection.criteria.push_back(
-      {"matching_rate", detection.matching_rate, parameters.verification.min_matching_rate, false});
-  if (!detection.criteria.front().passed())
-    detection.rejection = failureText(detection.criteria.front());
+  rate(detection, scene, parameters.verification);
   return detection;
+}
+
+void sortByScore(std::vector<Detection>& detections)
+{
+  std::stable_sort(detections.begin(), detections.end(),
+                   [](const Detection& a, const Detection& b) { return a.score > b.score; });
+}
+
+/// The best poses, best first.
+std::vector<Detection> refineAndRate(const std::vector<Hypothetical>& poses, const PointScene& scene,
+                                     const DetectorParameters& parameters, const Executor& executor)
+{
+  constexpr std::size_t MAX_REFINED = 10;
+  constexpr std::size_t MAX_POLISHED = 3;
+  std::vector<Detection> detections(std::min(poses.size(), MAX_REFINED));
+  executor.forEach(detections.size(), [&](std::size_t i) { detections[i] = assess(poses[i], scene, parameters); });
+  sortByScore(detections);
+  if (parameters.icp.method != IcpMethod::DistanceField)
+    return detections;
+  executor.forEach(std::min(detections.size(), MAX_POLISHED), [&](std::size_t i) {
+    const IcpResult polished = polish(detections[i].T_camera_object, scene, parameters.icp);
+    detections[i].T_camera_object = polished.T_camera_object;
+    detections[i].rms = polished.rms;
+    rate(detections[i], scene, parameters.verification);
+  });
+  sortByScore(detections);
+  return detections;
 }
 }  // namespace
 
@@ -124,14 +160,9 @@ DetectionResult Detector::match(const OrientedPoints& scene, bool scene_is_part)
   std::vector<SearchRegion> regions;
   regions.push_back(std::move(region));
   const auto poses = searchPoses(regions, nullptr, model, parameters_, deadline, executor_, clock, result.partial);
-  constexpr std::size_t MAX_REFINED = 10;
-  std::vector<Detection> detections(std::min(poses.size(), MAX_REFINED));
-  const PointScene searched{model, KdTree(model.surface.points), regions.front().samples, scene};
-  executor_.forEach(detections.size(),
-                    [&](std::size_t i) { detections[i] = assess(poses[i], searched, parameters_, scene_is_part); });
+  const PointScene searched{model, *surfaces_.front(), {regions.front().samples, {}}, scene, scene_is_part};
+  std::vector<Detection> detections = refineAndRate(poses, searched, parameters_, executor_);
   clock.lap("refinement");
-  std::stable_sort(detections.begin(), detections.end(),
-                   [](const Detection& a, const Detection& b) { return a.score > b.score; });
   for (auto& detection : detections)
     (detection.rejection.empty() ? result.detections : result.rejected).push_back(std::move(detection));
   summarize(result);

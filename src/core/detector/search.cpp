@@ -53,8 +53,6 @@ void describeScene(PreparedScene& scene, const TrainedModel& model, const Detect
     estimateGridCurvature(scene.samples, scene.grid, scene.runs, scene.normals, trained.curvature_measure,
                           trained.curvature_radius, OPPOSITE_WALL_ANGLE, executor);
   clock.lap("curvature");
-  if (parameters.icp.method == IcpMethod::PointToPoint || parameters.segmentation.veto)
-    scene.model_surface.emplace(model.surface.points);
 }
 
 namespace

@@ -28,8 +28,8 @@ struct PreparedScene
   std::vector<Eigen::Vector3f> normals;  ///< per pixel of the working grid
   double noise = 0;                      ///< of the depth, metres
   SceneSamples samples;
-  std::optional<Bin> bin;               ///< as given with the request
-  std::optional<KdTree> model_surface;  ///< the model's; only where nearest neighbours in it are asked for
+  std::optional<Bin> bin;                 ///< as given with the request
+  const KdTree* model_surface = nullptr;  ///< of the model, for nearest neighbours
 };
 
 /// Where poses are searched: samples that take part, and those of them that vote. One per candidate target in the
