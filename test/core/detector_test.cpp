@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "bin_picking_perception/evaluation/pose_error.hpp"
@@ -323,6 +324,49 @@ TEST(Match, findsThePartInAWholeScan)
   EXPECT_EQ(indexOf({result.detections.front()}, truth), 0);
   EXPECT_GT(result.detections.front().matching_rate, 0.999);
   EXPECT_THROW(detector().match({}, true), CloudError);
+}
+
+/// What a camera at the origin might see of the part: all that faces it, noisy along the ray.
+OrientedPoints facingScan(const Pose& truth, std::uint32_t seed)
+{
+  std::mt19937 random(seed);
+  std::normal_distribution<float> noise(0, static_cast<float>(SIGMA));
+  const OrientedPoints all = transformed(sampleSurface(test::teeModel()->mesh, 0.001, seed), truth);
+  OrientedPoints scan;
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    const Eigen::Vector3f ray = all.points[i].normalized();
+    if (all.normals[i].dot(ray) > -0.2f)
+      continue;
+    scan.points.emplace_back(all.points[i] + noise(random) * ray);
+    scan.normals.push_back(all.normals[i]);
+  }
+  return scan;
+}
+
+TEST(Match, fitsTheDistanceFieldFarBelowTheSpacingOfThePoints)
+{
+  const auto errorOf = [](IcpMethod method, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    Pose truth = test::randomPose(random, 0.1);
+    truth.translation().z() += 0.6;
+    DetectorParameters parameters;
+    parameters.icp.method = method;
+    const DetectionResult result = detector(parameters).match(facingScan(truth, seed), false);
+    if (result.detections.empty())
+      return PoseError{1, 1};
+    return poseError(result.detections.front().T_camera_object, truth, test::teeModel()->symmetry,
+                     test::teeModel()->center);
+  };
+  for (const std::uint32_t seed : {1u, 2u, 3u, 4u})
+  {
+    const PoseError fitted = errorOf(IcpMethod::DistanceField, seed);
+    // A thousand points with 0.1 mm of noise; the field itself is exact to a quarter of its cell.
+    EXPECT_LT(fitted.translation, 0.0001) << "seed " << seed;
+    EXPECT_LT(fitted.rotation, 0.004) << "seed " << seed;
+    EXPECT_LT(fitted.translation, 0.5 * errorOf(IcpMethod::None, seed).translation) << "seed " << seed;
+    EXPECT_LT(fitted.translation, errorOf(IcpMethod::PointToPoint, seed).translation) << "seed " << seed;
+  }
 }
 
 TEST(Match, saysWhyNothingWasFoundAndThatTimeWasUp)

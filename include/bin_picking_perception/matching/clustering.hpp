@@ -14,7 +14,7 @@ struct ClusteringParameters
   double distance = 0.1;  // of the diameter
   double angle = 0.35;    // rad
   int poses_per_reference = 2;
-  int max_clusters = 1000;
+  int max_clusters = 400;
 
   void visit(ParameterVisitor& v);
 };

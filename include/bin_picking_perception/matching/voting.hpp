@@ -17,14 +17,14 @@ struct VotingParameters
 {
   double reference_share = 0.04;
   int min_references = 8;
-  double max_pair_distance = 1.0;
+  double max_pair_distance = 0.8;
   int weight = 1;
   double curvature_spread = 0.3;
   bool curvature_wildcard = true;
   int max_bucket = 0;
-  int max_votes = 30000;
+  int max_votes = 60000;
   bool skip_repeated = true;
-  int peaks_per_reference = 12;
+  int peaks_per_reference = 8;
   double min_peak_share = 0.4;
   bool sum_adjacent_angles = true;
 

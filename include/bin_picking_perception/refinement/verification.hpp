@@ -71,6 +71,19 @@ using SurfaceIndices = std::vector<std::uint32_t>;
 /// Every step-th surface point of the nearest view so that about max_points remain.
 SurfaceIndices facingPoints(const TrainedModel& model, const Pose& T_camera_object, std::size_t max_points);
 
+/// facingPoints() of many poses: chosen once for each view. The model must outlive it.
+class FacingPoints
+{
+public:
+  FacingPoints(const TrainedModel& model, std::size_t max_points);
+
+  const SurfaceIndices& at(const Pose& T_camera_object) const;
+
+private:
+  const TrainedModel& model_;
+  std::vector<SurfaceIndices> of_views_;
+};
+
 /// Surface points that the camera would see at this pose if nothing but the part were there: a z-buffer of the points
 /// themselves. Exact also where the trained views are too far apart (into a bore, along a tube); slower than
 /// facingPoints.

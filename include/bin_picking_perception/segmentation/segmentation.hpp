@@ -25,7 +25,7 @@ enum class SegmentationMethod
 struct SegmentationParameters
 {
   SegmentationMethod method = SegmentationMethod::DepthEdges;
-  int step = 1;          // of the pixels that are looked at, along rows and columns
+  int step = 2;          // of the pixels that are looked at, along rows and columns
   bool veto = false;     // true: only candidate targets are matched (paper); false: they only come first
   double gray_near = 0;  // depth that maps to the brightest gray; both 0: from the bin or the data
   double gray_far = 0;

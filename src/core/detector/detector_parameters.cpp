@@ -32,8 +32,10 @@ DetectorParameters paperPreset()
   DetectorParameters p;
   p.segmentation.method = SegmentationMethod::Watershed;
   p.segmentation.veto = true;
+  p.segmentation.step = 1;
   p.voting.reference_share = 0.2;
   p.voting.min_references = 1;
+  p.voting.max_pair_distance = 1;
   p.voting.weight = 3;
   p.voting.curvature_spread = 0;
   p.voting.curvature_wildcard = false;
@@ -42,6 +44,7 @@ DetectorParameters paperPreset()
   p.voting.skip_repeated = false;
   p.voting.peaks_per_reference = 1;
   p.voting.sum_adjacent_angles = false;
+  p.clustering.max_clusters = 1000;
   p.icp.method = IcpMethod::PointToPoint;
   p.icp.max_iterations = 50;
   p.icp.max_distance = 3;
@@ -52,12 +55,14 @@ DetectorParameters paperPreset()
 DetectorParameters accuratePreset()
 {
   DetectorParameters p;
+  p.segmentation.step = 1;
   p.voting.reference_share = 0.1;
   p.voting.min_references = 40;
-  p.voting.max_votes = 60000;
+  p.voting.max_pair_distance = 1;
   p.voting.peaks_per_reference = 20;
   p.voting.min_peak_share = 0.3;
   p.clustering.poses_per_reference = 4;
+  p.clustering.max_clusters = 1000;
   p.verification.max_refined = 120;
   p.icp.max_iterations = 16;
   p.verification.fruitless_rounds = 4;

@@ -15,13 +15,14 @@ std::vector<Hypothesis> keepPromising(const std::vector<Hypothesis>& hypotheses,
   constexpr std::size_t BLOCK = 64;
   // The pose of one reference point is off by about the distance of the points that voted.
   const double tolerance = model.parameters.matching_leaf;
+  const FacingPoints facing(model, GLANCE_POINTS);
   std::vector<std::pair<double, std::size_t>> ranked(hypotheses.size());
   executor.forEach((hypotheses.size() + BLOCK - 1) / BLOCK, [&](std::size_t block) {
     for (std::size_t i = block * BLOCK; i < std::min(hypotheses.size(), (block + 1) * BLOCK); ++i)
     {
       const Pose& T = hypotheses[i].T_camera_object;
-      const PoseEvidence evidence = gatherEvidence(model, facingPoints(model, T, GLANCE_POINTS), T, scene.grid,
-                                                   scene.surroundings, scene.normals, tolerance, parameters);
+      const PoseEvidence evidence =
+          gatherEvidence(model, facing.at(T), T, scene.grid, scene.surroundings, scene.normals, tolerance, parameters);
       ranked[i] = {-promise(evidence, parameters), i};
     }
   });

@@ -35,14 +35,12 @@ Pose nudge(const Pose& T_camera_object, const PreparedScene& scene, const Traine
 }
 
 Ranked lookAt(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
-              const DetectorParameters& parameters, int comparison_cell)
+              const FacingPoints& facing, const DetectorParameters& parameters, int comparison_cell)
 {
-  constexpr std::size_t COARSE_POINTS = 64;
   const Pose T = nudge(pose.T_camera_object, scene, model, parameters.icp);
   // A leaf is forgiven before the pose is refined.
-  const PoseEvidence evidence =
-      gatherEvidence(model, facingPoints(model, T, COARSE_POINTS), T, scene.grid, scene.surroundings, scene.normals,
-                     model.parameters.leaf, parameters.verification);
+  const PoseEvidence evidence = gatherEvidence(model, facing.at(T), T, scene.grid, scene.surroundings, scene.normals,
+                                               model.parameters.leaf, parameters.verification);
   return {{T, pose.votes, pose.region},
           promise(evidence, parameters.verification),
           coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell)};
@@ -86,8 +84,11 @@ std::vector<Ranked> rankPoses(const std::vector<Hypothetical>& poses, const Prep
     });
     return ranked;
   }
-  executor.forEach(poses.size(),
-                   [&](std::size_t i) { ranked[i] = lookAt(poses[i], scene, model, parameters, comparison_cell); });
+  constexpr std::size_t COARSE_POINTS = 64;
+  const FacingPoints facing(model, COARSE_POINTS);
+  executor.forEach(poses.size(), [&](std::size_t i) {
+    ranked[i] = lookAt(poses[i], scene, model, facing, parameters, comparison_cell);
+  });
   std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
   std::vector<Ranked> distinct;
   for (Ranked& candidate : ranked)

@@ -42,6 +42,17 @@ const ViewTemplate& nearestView(const TrainedModel& model, const Pose& T_camera_
   return *nearest;
 }
 
+FacingPoints::FacingPoints(const TrainedModel& model, std::size_t max_points) : model_(model)
+{
+  for (const ViewTemplate& view : model.views)
+    of_views_.push_back(thinned(view.visible, max_points));
+}
+
+const SurfaceIndices& FacingPoints::at(const Pose& T_camera_object) const
+{
+  return of_views_[static_cast<std::size_t>(&nearestView(model_, T_camera_object) - model_.views.data())];
+}
+
 SurfaceIndices facingPoints(const TrainedModel& model, const Pose& T_camera_object, std::size_t max_points)
 {
   return thinned(nearestView(model, T_camera_object).visible, max_points);
@@ -88,6 +99,7 @@ public:
         pitch_per_depth_(static_cast<float>(grid.pitch(1.0))),
         tolerance_(static_cast<float>(tolerance)),
         match_distance_(static_cast<float>(parameters.match_distance)),
+        most_residual_(1.001f * std::max(tolerance_, match_distance_)),
         min_cosine_(static_cast<float>(std::cos(parameters.max_normal_angle)))
   {}
 
@@ -104,10 +116,12 @@ public:
     const float pitch = pitch_per_depth_ * point.position.z();
     // The pixel's footprint on a surface that is seen at a flat angle.
     const float aside = tolerance_ + 1.5f * pitch / std::max(0.2f, point.cosine);
+    const float reach = std::sqrt(aside * aside + most_residual_ * most_residual_);
     // The measured surface may lie half a pixel beside the ray: a neighbour that explains the point is as good.
     constexpr int AROUND[5][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     for (const auto& offset : AROUND)
       if (grid_.inside(column + offset[0], row + offset[1]) &&
+          isWithin(grid_.index(column + offset[0], row + offset[1]), point, reach) &&
           explains(grid_.index(column + offset[0], row + offset[1]), point, aside * aside, finding))
         return finding;
     const int center = grid_.index(column, row);
@@ -117,6 +131,12 @@ public:
   }
 
 private:
+  /// Else the pixel is too far for any finding; false for NaN. By the depth alone, the other planes are not read.
+  bool isWithin(int pixel, const PosedPoint& point, float reach) const
+  {
+    return std::abs(grid_.z[static_cast<std::size_t>(pixel)] - point.position.z()) <= reach;
+  }
+
   bool explains(int pixel, const PosedPoint& point, float max_squared_aside, Finding& finding) const
   {
     const Eigen::Vector3f d = grid_.point(pixel) - point.position;
@@ -154,6 +174,7 @@ private:
   float pitch_per_depth_;
   float tolerance_;
   float match_distance_;
+  float most_residual_;  ///< a larger one is no finding; with room for what rounding moves
   float min_cosine_;
 };
 
