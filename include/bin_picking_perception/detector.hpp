@@ -143,6 +143,6 @@ private:
   std::vector<std::shared_ptr<const TrainedModel>> models_;
   DetectorParameters parameters_;
   Executor executor_;
-  std::vector<std::shared_ptr<const KdTree>> surfaces_;  ///< of the models, where nearest neighbours are asked for
+  std::vector<std::shared_ptr<const KdTree>> surfaces_;  ///< of the models, to find nearest neighbours
 };
 }  // namespace bin_picking

@@ -24,6 +24,7 @@ struct PointsAdaptor
     return false;
   }
 };
+
 /// What nanoflann asks of a set of results: all within a radius, only their indices.
 struct IndicesWithin
 {

@@ -29,7 +29,7 @@ struct PreparedScene
   double noise = 0;                      ///< of the depth, metres
   SceneSamples samples;
   std::optional<Bin> bin;                 ///< as given with the request
-  const KdTree* model_surface = nullptr;  ///< of the model, for nearest neighbours
+  const KdTree* model_surface = nullptr;  ///< of the model, to find nearest neighbours
 };
 
 /// Where poses are searched: samples that take part, and those of them that vote. One per candidate target in the
