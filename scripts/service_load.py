@@ -9,8 +9,8 @@ Usage: service_load.py [--calls 1000] [--clients 2] [--detector NAME] [--max-gro
 Half of the calls wait for a new cloud, half take the latest one. Checked are: every call is answered, at least one with
 grasps; each answer is of one cloud (the same stamp and frame in header, detections and grasps; the part in the hand is the
 part where it was found); grasps have names that none had before; stage times are complete; the memory of the process
-(VmRSS) grows by less than --max-growth from the first to the last tenth of the calls (at least 20, medians): in the first,
-caches, threads and pools come into being.
+(VmRSS) grows by less than --max-growth to the last tenth of the calls from the last tenth of their first quarter (medians; at
+least 20): before, caches, threads and pools come into being.
 Exit code 0: all of this holds; 1: not, with a line for each fault.
 """
 import argparse
@@ -153,14 +153,15 @@ def main():
     rospy.init_node("service_load", anonymous=True)
     wait_until_ready(arguments.detector)
     process = process_of(arguments.process or arguments.detector)
-    num_first = max(20, arguments.calls // 10)
+    num_last = max(20, arguments.calls // 10)
+    num_first = max(num_last, arguments.calls // 4)
     first = Load(arguments.detector, num_first, process)
     first.run(arguments.clients)
     load = Load(arguments.detector, arguments.calls - num_first, process)
     load.run(arguments.clients)
     # Each cloud on its way takes tens of MiB for a moment: of many looks the middle one.
-    before = float(np.median(first.memory or [0]))
-    growth = float(np.median(load.memory[-num_first:] or [0])) - before
+    before = float(np.median(first.memory[-num_last:] or [0]))
+    growth = float(np.median(load.memory[-num_last:] or [0])) - before
 
     faults = first.faults + load.faults
     if growth > arguments.max_growth:
