@@ -10,7 +10,7 @@
 namespace bin_picking
 {
 Detector::Detector(std::vector<std::shared_ptr<const TrainedModel>> models, DetectorParameters parameters)
-    : models_(std::move(models)), parameters_(std::move(parameters)), executor_(parameters_.num_threads)
+    : models_(std::move(models)), parameters_(parameters), executor_(parameters_.num_threads)
 {
   if (models_.empty())
     throw ParameterError("a detector needs at least one trained model, but none was given");
