@@ -167,7 +167,6 @@ void VoteCaster::findEntries(BinRange q1)
   {
     match.run = table.run(match.run.begin, match.run.end);
     __builtin_prefetch(table.entries() + match.run.begin);
-    __builtin_prefetch(table.entries() + match.run.end - 1);
   }
 }
 
