@@ -179,10 +179,10 @@ struct Obstacles::Impl
     const Eigen::AlignedBox3d covered = boxAround(way.corners(), T_bin_camera, Eigen::Vector3d::Zero());
     for (std::size_t i = 0; i < sides.size(); ++i)
       if (!areApart(covered, sides[i].box_bin, 0))
-        if (const Encounter met = way.meetSide(sides[i].box, kindOf(sides[i]), static_cast<int>(i)); !met.free())
+        if (Encounter met = way.meetSide(sides[i].box, kindOf(sides[i]), static_cast<int>(i)); !met.free())
           return met;
     for (const std::size_t i : neighboursOf(target, way.box(), motion_camera))
-      if (const Encounter met = way.meet(*parts[i].surface, parts[i].placed.T_camera_object, static_cast<int>(i));
+      if (Encounter met = way.meet(*parts[i].surface, parts[i].placed.T_camera_object, static_cast<int>(i));
           !met.free())
         return met;
     if (!seen)
@@ -338,10 +338,10 @@ Clearance Obstacles::pulledOut(const Eigen::Vector3d& motion_camera, std::size_t
 
 Clearance Obstacles::retreat(const Gripper& gripper, const ToolMotion& motion, std::size_t target) const
 {
-  const Clearance of_gripper = leaving(shapeAt(gripper, motion.opening), motion, target);
+  Clearance of_gripper = leaving(shapeAt(gripper, motion.opening), motion, target);
   if (!of_gripper.free())
     return of_gripper;
-  const Clearance of_part = pulledOut(motion.motion_camera, target);
+  Clearance of_part = pulledOut(motion.motion_camera, target);
   return of_part.margin() >= of_gripper.margin() ? of_gripper : of_part;
 }
 }  // namespace bin_picking

@@ -21,7 +21,10 @@ struct LineGrid
   int columns = 0, rows = 0;
 
   Eigen::Vector2d at(int column, int row) const { return low + step * Eigen::Vector2d(column, row); }
-  std::size_t index(int column, int row) const { return static_cast<std::size_t>(row * columns + column); }
+  std::size_t index(int column, int row) const
+  {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+  }
 };
 
 /// What one pad sees of the part: depths are along the way of the pad towards the part, larger is met first.

@@ -62,7 +62,7 @@ void SeenSpace::layOut(const DepthGrid& measured, const Bin* bin)
   step_ = {1 / fx_, 1 / fy_};
   cx_ = static_cast<float>(camera.cx + left_);
   cy_ = static_cast<float>(camera.cy + top_);
-  const auto pixels = static_cast<std::size_t>(stride_ * wholeBlocks(height_));
+  const auto pixels = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(wholeBlocks(height_));
   depth_.assign(pixels, FAR_AWAY);
   measured_.assign(pixels, 0);
   hidden_by_.assign(pixels, -1);

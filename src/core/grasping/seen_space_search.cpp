@@ -16,7 +16,7 @@ SeenSpace::Window SeenSpace::windowOf(const Points& points, float margin) const
   Eigen::AlignedBox2f window;
   for (const auto& point : points)
   {
-    const Eigen::Vector3f p = point.template cast<float>();
+    const Eigen::Vector3f& p = point.template cast<float>();  // a temporary lives as long as its reference
     if (p.z() < MIN_DEPTH)
       return {0, 0, width_, height_};
     const float z = std::max(MIN_DEPTH, p.z() - margin);

@@ -22,11 +22,14 @@ void forEachCell(const std::vector<Eigen::Vector3f>& points, const Eigen::Aligne
                  const Visit& visit)
 {
   const Eigen::Array3i cells = (box.sizes().array() / cell).cast<int>() + 1;
+  const auto row = static_cast<std::size_t>(cells.x());
+  const auto layer = row * static_cast<std::size_t>(cells.y());
   const auto cellOf = [&](const Eigen::Vector3f& p) {
     const Eigen::Array3i i = ((p - box.min()).array() / cell).cast<int>();
-    return static_cast<std::size_t>((i.z() * cells.y() + i.y()) * cells.x() + i.x());
+    return static_cast<std::size_t>(i.z()) * layer + static_cast<std::size_t>(i.y()) * row +
+           static_cast<std::size_t>(i.x());
   };
-  std::vector<std::size_t> begin(static_cast<std::size_t>(cells.prod()) + 1, 0);
+  std::vector<std::size_t> begin(layer * static_cast<std::size_t>(cells.z()) + 1, 0);
   for (const Eigen::Vector3f& p : points)
     ++begin[cellOf(p) + 1];
   for (std::size_t i = 1; i < begin.size(); ++i)

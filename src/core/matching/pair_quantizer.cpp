@@ -114,7 +114,9 @@ BIN_PICKING_SIMD void quantizePairs(const Constants c, const float* __restrict x
     keys[i] = stored ? key : c.no_key;
     // alphaInLocalFrame
     const float turn = fastTurn(-(c.zx * dx + c.zy * dy + c.zz * dz), c.yx * dx + c.yy * dy + c.yz * dz);
-    alphas[i] = static_cast<std::uint16_t>(static_cast<std::int32_t>(turn * 65536 + 0.5f));
+    // A share of a turn, never negative, so that this rounds right; lround would end the vector code.
+    alphas[i] = static_cast<std::uint16_t>(
+        static_cast<std::int32_t>(turn * 65536 + 0.5f));  // NOLINT(bugprone-incorrect-roundings)
   }
 }
 }  // namespace

@@ -26,7 +26,7 @@ TileIndex::TileIndex(const std::vector<Eigen::Vector3f>& points, float tile) : t
   columns_ = static_cast<int>((high.x() - low_.x()) / tile_) + 1;
   rows_ = static_cast<int>((high.y() - low_.y()) / tile_) + 1;
 
-  starts_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+  starts_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
   std::vector<std::size_t> tile_of(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
   {
