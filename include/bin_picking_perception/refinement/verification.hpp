@@ -25,7 +25,7 @@ struct VerificationParameters
   double min_outline_share = 0.3;
   double min_score = 0.7;
   double min_visible_fraction = 0.3;
-  double min_inlier_share = 0.78;
+  double min_inlier_share = 0.75;
   double max_violation_share = 0.2;
   double unmeasured_weight = 0.3;
   double min_turn_margin = 10;
@@ -34,7 +34,7 @@ struct VerificationParameters
   double max_bin_penetration = 0.006;
   double overlap = 0.35;
   int max_refined = 96;
-  int fruitless_rounds = 2;
+  int fruitless_rounds = 3;
 
   void visit(ParameterVisitor& v);
 };

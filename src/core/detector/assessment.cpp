@@ -66,11 +66,10 @@ Pose polish(const Pose& T_camera_object, const PreparedScene& scene, const Train
   return icpOnField(T_camera_object, ICP_PIXELS, scene, model, icp);
 }
 
-/// Neither finer refinement nor another turn would save this pose. A turn may bring much of the surface to where it
-/// explains the scene, but hardly shows more of it.
+/// Neither finer refinement nor another turn would save this pose.
 bool isHopeless(const PoseEvidence& evidence, const VerificationParameters& parameters)
 {
-  constexpr double INLIER_SHARE = 0.6;  // of what is asked for
+  constexpr double INLIER_SHARE = 0.85;  // of what is asked for
   constexpr double VISIBLE_SHARE = 0.85;
   return evidence.inlierShare(parameters.unmeasured_weight) < INLIER_SHARE * parameters.min_inlier_share ||
          evidence.visibleFraction() < VISIBLE_SHARE * parameters.min_visible_fraction;

@@ -52,23 +52,15 @@ bool isSmallTurn(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b)
   return a.cwiseProduct(b).sum() > 1 + 2 * COSINE;  // the trace of a^T b
 }
 
-/// The same place and the same turn, but for what a near symmetry of the part turns: whoever is refined first is held
-/// against these anyway (chooseAmongRivals).
+/// The same place and the same turn, modulo the part's symmetry. Poses that a near symmetry leads to are others: of
+/// these rivals the one that ranks first need not be the one that ends at the right turn.
 bool samePlace(const Pose& a, const Pose& b, const TrainedModel& model)
 {
   const double near_enough = SAME_DISTANCE * model.diameter;
-  const Eigen::Vector3d center = b.linear().transpose() * (a * model.center - b.translation());  // as b sees it
-  if ((center - model.center).squaredNorm() > model.diameter * model.diameter)
+  if ((a * model.center - b * model.center).squaredNorm() > near_enough * near_enough)
     return false;
-  const auto same = [&](const Pose& turn) {
-    if ((center - turn * model.center).squaredNorm() > near_enough * near_enough)
-      return false;
-    const Pose other = b * turn;
-    const Pose nearest = model.symmetry.trivial() ? other : nearestEquivalent(other, a, model.symmetry);
-    return isSmallTurn(a.linear(), nearest.linear());
-  };
-  return same(Pose::Identity()) || std::any_of(model.near_symmetries.begin(), model.near_symmetries.end(),
-                                               [&](const NearSymmetry& near) { return same(near.T_object_object); });
+  const Pose nearest = model.symmetry.trivial() ? b : nearestEquivalent(b, a, model.symmetry);
+  return isSmallTurn(a.linear(), nearest.linear());
 }
 
 /// All poses, most promising first, each place once.
@@ -106,15 +98,25 @@ double sharedPart(const std::vector<int>& cells, const std::vector<int>& explain
     shared += std::binary_search(explained.begin(), explained.end(), cell) ? 1 : 0;
   return cells.empty() ? 0 : static_cast<double>(shared) / static_cast<double>(cells.size());
 }
+/// Whether refinement has led there already, wherever it started: it would lead there again.
+bool isAssessed(const Pose& T_camera_object, const std::vector<Assessed>& assessed, const TrainedModel& model)
+{
+  return std::any_of(assessed.begin(), assessed.end(), [&](const Assessed& other) {
+    return samePlace(other.detection.T_camera_object, T_camera_object, model);
+  });
+}
+
 /// The next poses that lie where nothing was accepted yet. \param next into `ranked`, moved on
 std::vector<const Ranked*> nextRound(const std::vector<Ranked>& ranked, const std::vector<int>& explained,
+                                     const std::vector<Assessed>& assessed, const TrainedModel& model,
                                      std::size_t& next)
 {
-  constexpr std::size_t ROUND = 16;
+  constexpr std::size_t ROUND = 8;
   constexpr double EXPLAINED = 0.6;
   std::vector<const Ranked*> round;
   for (; next < ranked.size() && round.size() < ROUND; ++next)
-    if (sharedPart(ranked[next].cells, explained) < EXPLAINED)
+    if (sharedPart(ranked[next].cells, explained) < EXPLAINED &&
+        !isAssessed(ranked[next].pose.T_camera_object, assessed, model))
       round.push_back(&ranked[next]);
   return round;
 }
@@ -146,7 +148,7 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
   const std::size_t limit = verification.enabled ? static_cast<std::size_t>(verification.max_refined) : ranked.size();
   while (next < ranked.size() && ready.size() < limit && fruitless < verification.fruitless_rounds)
   {
-    const std::vector<const Ranked*> round = nextRound(ranked, explained, next);
+    const std::vector<const Ranked*> round = nextRound(ranked, explained, ready, model, next);
     if (deadline.passed())
     {
       partial = partial || !round.empty();

@@ -64,7 +64,7 @@ void VerificationParameters::visit(ParameterVisitor& v)
       overlap);
   v.field({"max_refined", "", "clusters that are refined and tested in full, best first", 1, 10000}, max_refined);
   v.field({"fruitless_rounds", "",
-           "poses are refined in rounds of 16, most promising first; the search ends after so many rounds in a row of "
+           "poses are refined in rounds of 8, most promising first; the search ends after so many rounds in a row of "
            "which nothing was accepted",
            1, 1000},
           fruitless_rounds);
