@@ -165,8 +165,9 @@ VotingResult voteInScene()
   std::vector<int> all(samples.size());
   for (std::size_t i = 0; i < all.size(); ++i)
     all[i] = static_cast<int>(i);
-  return voteForPoses(*bench.model, samples, samples.curvature_complete, chooseReferences(all, bench.parameters.voting),
-                      bench.parameters.voting, Deadline(0), bench.executor);
+  return voteForPoses(*bench.model, samples, samples.curvature_complete, bench.scene.edge_points,
+                      chooseReferences(all, bench.parameters.voting), bench.parameters.voting, Deadline(0),
+                      bench.executor);
 }
 
 void voting(benchmark::State& state)

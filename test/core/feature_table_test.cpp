@@ -136,6 +136,43 @@ TEST(FeatureTable, holdsExactlyThePairsOfBruteForce)
   }
 }
 
+TEST(FeatureTable, ofEdgesHoldsThePairsThatSomeViewShows)
+{
+  const OrientedPoints points = cloudWithCurvature(90);
+  OrientedPoints edges = test::torus(0.05, 0.01, 40);
+  const FeatureQuantizer q = quantizerFor(0.003, 1);
+  PairSelection selection;
+  selection.min_distance = 0.005;
+  selection.references = {0, 7, 20, 89};
+  selection.visibility_words = 1;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    selection.visibility.push_back(std::uint64_t{1} << (i % 3));
+  for (std::size_t j = 0; j < edges.size(); ++j)
+    selection.second_visibility.push_back(j % 2 == 0 ? 1 : 6);
+  const FeatureTable table(points, edges, selection, q, Executor(2));
+  EXPECT_EQ(table.references(), selection.references);
+
+  std::size_t expected = 0;
+  for (std::uint32_t row = 0; row < 4; ++row)
+    for (std::size_t j = 0; j < edges.size(); ++j)
+    {
+      const std::size_t i = selection.references[row];
+      const PairFeature f = pairFeature(points.points[i], points.normals[i], 0, edges.points[j], edges.normals[j], 0);
+      const bool is_shown = (i % 3 == 0) == (j % 2 == 0);
+      if (!is_shown || f.distance < 0.005f || q.geometricKey(f) < 0)
+        continue;
+      ++expected;
+      const float alpha = alphaInLocalFrame(alignToLocalFrame(points.points[i], points.normals[i]) * edges.points[j]);
+      const auto run = table.find(static_cast<std::uint32_t>(q.geometricKey(f)), 0, 0);
+      const std::uint32_t bits = TableEntry::make(row, true, toTurnFraction(alpha)).bits;
+      EXPECT_TRUE(std::any_of(table.entries() + run.begin, table.entries() + run.end,
+                              [bits](const TableEntry& entry) { return entry.bits == bits; }))
+          << "row " << row << ", edge " << j;
+    }
+  EXPECT_GT(expected, 50u);
+  EXPECT_EQ(table.numEntries(), expected);
+}
+
 TEST(FeatureTable, curvaturesOfOneCellAreOneRun)
 {
   const OrientedPoints points = cloudWithCurvature(150);

@@ -38,7 +38,7 @@ TEST_P(AnyFeature, recoversAnyRotationAndAnyTranslation)
     VotingParameters voting;
     voting.reference_share = 0.2;
     const auto references = chooseReferences(test::everyIndex(scene.size()), voting);
-    const auto votes = voteForPoses(model, scene, {}, references, voting, Deadline(), Executor(2));
+    const auto votes = voteForPoses(model, scene, {}, {}, references, voting, Deadline(), Executor(2));
     const auto clusters = clusterPoses(votes.hypotheses, model, {});
     ASSERT_FALSE(clusters.empty());
     const Pose& found = clusters.front().T_camera_object;
@@ -66,8 +66,8 @@ TEST(Voting, sameBitsForAnyNumberOfThreads)
   const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
   const VotingParameters voting;
   const auto references = chooseReferences(test::everyIndex(scene.size()), voting);
-  const auto one = voteForPoses(model, scene, {}, references, voting, Deadline(), Executor(1));
-  const auto four = voteForPoses(model, scene, {}, references, voting, Deadline(), Executor(4));
+  const auto one = voteForPoses(model, scene, {}, {}, references, voting, Deadline(), Executor(1));
+  const auto four = voteForPoses(model, scene, {}, {}, references, voting, Deadline(), Executor(4));
   ASSERT_EQ(one.hypotheses.size(), four.hypotheses.size());
   EXPECT_EQ(one.statistics.votes, four.statistics.votes);
   for (std::size_t i = 0; i < one.hypotheses.size(); ++i)
@@ -81,7 +81,7 @@ TEST(Voting, curvatureSavesVotes)
   const auto votesOf = [&voting](FeatureKind feature) {
     const TrainedModel model = test::modelOf(test::lBlock(0.0015, 1), LEAF, feature);
     const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
-    return voteForPoses(model, scene, {}, chooseReferences(test::everyIndex(scene.size()), {}), voting, Deadline(),
+    return voteForPoses(model, scene, {}, {}, chooseReferences(test::everyIndex(scene.size()), {}), voting, Deadline(),
                         Executor(2))
         .statistics.votes;
   };
@@ -96,7 +96,7 @@ TEST(Voting, weightOfEquationEightAddsUp)
     VotingParameters voting;
     voting.weight = weight;
     double sum = 0;
-    for (const auto& h : voteForPoses(model, scene, {}, {5, 50, 100}, voting, Deadline(), Executor(1)).hypotheses)
+    for (const auto& h : voteForPoses(model, scene, {}, {}, {5, 50, 100}, voting, Deadline(), Executor(1)).hypotheses)
       sum = std::max(sum, h.votes);
     return sum;
   };
@@ -112,8 +112,8 @@ TEST(Voting, unknownCurvatureMeetsEveryBin)
   VotingParameters voting;
   voting.curvature_wildcard = true;
   voting.max_votes = 0;
-  const auto wild = voteForPoses(model, scene, unknown, {3, 33, 66}, voting, Deadline(), Executor(1));
-  const auto four_dimensional = voteForPoses(plain, scene, {}, {3, 33, 66}, voting, Deadline(), Executor(1));
+  const auto wild = voteForPoses(model, scene, unknown, {}, {3, 33, 66}, voting, Deadline(), Executor(1));
+  const auto four_dimensional = voteForPoses(plain, scene, {}, {}, {3, 33, 66}, voting, Deadline(), Executor(1));
   EXPECT_EQ(wild.statistics.votes, four_dimensional.statistics.votes);
 }
 
@@ -123,9 +123,9 @@ TEST(Voting, longBucketsAreSkipped)
   const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
   VotingParameters capped;
   capped.max_votes = 0;
-  const auto all = voteForPoses(model, scene, {}, {3, 33}, capped, Deadline(), Executor(1)).statistics;
+  const auto all = voteForPoses(model, scene, {}, {}, {3, 33}, capped, Deadline(), Executor(1)).statistics;
   capped.max_bucket = 50;
-  const auto few = voteForPoses(model, scene, {}, {3, 33}, capped, Deadline(), Executor(1)).statistics;
+  const auto few = voteForPoses(model, scene, {}, {}, {3, 33}, capped, Deadline(), Executor(1)).statistics;
   EXPECT_LT(few.votes, all.votes);
   EXPECT_LE(few.votes, few.pairs * 50);
 }
@@ -136,9 +136,9 @@ TEST(Voting, budgetBoundsVotesAndThinsPairsEvenly)
   const OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
   VotingParameters voting;
   voting.max_votes = 0;
-  const auto all = voteForPoses(model, scene, {}, {3, 33}, voting, Deadline(), Executor(1)).statistics;
+  const auto all = voteForPoses(model, scene, {}, {}, {3, 33}, voting, Deadline(), Executor(1)).statistics;
   voting.max_votes = static_cast<int>(all.votes / 2 / 5);  // about a fifth for either reference
-  const auto thinned = voteForPoses(model, scene, {}, {3, 33}, voting, Deadline(), Executor(1));
+  const auto thinned = voteForPoses(model, scene, {}, {}, {3, 33}, voting, Deadline(), Executor(1));
   EXPECT_EQ(thinned.statistics.pairs, all.pairs);
   // Runs are of different lengths: a fifth of the pairs has a fifth of the votes to within their scatter.
   EXPECT_LT(static_cast<double>(thinned.statistics.votes), 0.25 * static_cast<double>(all.votes));
@@ -153,17 +153,17 @@ TEST(Voting, repeatedPairsCountOnce)
   OrientedPoints scene = sceneOf(model, test::lBlock(0.0015, 2), Pose::Identity());
   VotingParameters voting;
   voting.max_votes = 0;
-  const auto once = voteForPoses(model, scene, {}, {3, 33}, voting, Deadline(), Executor(1));
+  const auto once = voteForPoses(model, scene, {}, {}, {3, 33}, voting, Deadline(), Executor(1));
   // Every point a second time, in the same place: nothing new is said.
   const OrientedPoints copy = scene;
   scene.points.insert(scene.points.end(), copy.points.begin(), copy.points.end());
   scene.normals.insert(scene.normals.end(), copy.normals.begin(), copy.normals.end());
   scene.curvature.insert(scene.curvature.end(), copy.curvature.begin(), copy.curvature.end());
-  const auto twice = voteForPoses(model, scene, {}, {3, 33}, voting, Deadline(), Executor(1));
+  const auto twice = voteForPoses(model, scene, {}, {}, {3, 33}, voting, Deadline(), Executor(1));
   EXPECT_EQ(twice.statistics.votes, once.statistics.votes);
   EXPECT_GT(twice.statistics.pairs, once.statistics.pairs);
   voting.skip_repeated = false;
-  const auto counted = voteForPoses(model, scene, {}, {3, 33}, voting, Deadline(), Executor(1));
+  const auto counted = voteForPoses(model, scene, {}, {}, {3, 33}, voting, Deadline(), Executor(1));
   EXPECT_GE(counted.statistics.votes, 2 * once.statistics.votes);
 }
 
@@ -181,7 +181,7 @@ TEST(Voting, oneProfileOfASymmetricPartFindsItEverywhere)
     const Pose T = test::randomPose(random, 0.4);
     const OrientedPoints scene = sceneOf(folded, test::torus(0.04, 0.015, 60000, 2), T);
     const auto references = chooseReferences(test::everyIndex(scene.size()), {});
-    const auto votes = voteForPoses(folded, scene, {}, references, {}, Deadline(), Executor(2));
+    const auto votes = voteForPoses(folded, scene, {}, {}, references, {}, Deadline(), Executor(2));
     const auto clusters = clusterPoses(votes.hypotheses, folded, {});
     ASSERT_FALSE(clusters.empty());
     const Pose& found = clusters.front().T_camera_object;
@@ -199,7 +199,7 @@ TEST(Voting, passedDeadlineIsPartialAndHasNoPoses)
   Deadline deadline(1e-9);
   while (!deadline.passed())
   {}
-  const auto votes = voteForPoses(model, scene, {}, {1, 2, 3}, {}, deadline, Executor(1));
+  const auto votes = voteForPoses(model, scene, {}, {}, {1, 2, 3}, {}, deadline, Executor(1));
   EXPECT_TRUE(votes.partial);
   EXPECT_TRUE(votes.hypotheses.empty());
 }
@@ -344,6 +344,93 @@ TEST(MatchingRate, countsTheShareWithinTheDistance)
   std::vector<Eigen::Vector3f> scene = {{0, 0, 0.001f}, {0, 0, 0.004f}, {0, 0, 0.006f}, {0, 0, 0.1f}};
   EXPECT_DOUBLE_EQ(matchingRate(model, Pose::Identity(), scene, 0.005), 0.5);
   EXPECT_DOUBLE_EQ(matchingRate(model, Pose::Identity(), {}, 0.005), 0);
+}
+/// The rims of a plate's two large faces, a point every 4 mm, each with the direction out of the face.
+/// \param shift of the first point along each side
+OrientedPoints rims(const Eigen::Vector3f& half, bool both, float shift)
+{
+  OrientedPoints edges;
+  const auto side = [&](int across, float z) {
+    const int along = 1 - across;
+    for (const float end : {-1.0f, 1.0f})
+      for (float t = -half[along] + shift; t <= half[along]; t += 0.004f)
+      {
+        Eigen::Vector3f p(0, 0, z);
+        p[across] = end * half[across];
+        p[along] = t;
+        edges.points.push_back(p);
+        edges.normals.push_back(end * Eigen::Vector3f::Unit(across));
+      }
+  };
+  for (const int across : {0, 1})
+  {
+    side(across, half.z());
+    if (both)
+      side(across, -half.z());
+  }
+  return edges;
+}
+
+OrientedPoints face(const Eigen::Vector3f& half, float z, float spacing, float shift)
+{
+  OrientedPoints points;
+  for (float x = -half.x() + shift; x < half.x(); x += spacing)
+    for (float y = -half.y() + shift; y < half.y(); y += spacing)
+    {
+      points.points.emplace_back(x, y, z * half.z());
+      points.normals.emplace_back(0, 0, z);
+    }
+  return points;
+}
+
+// All pairs on a plane look alike but for their length. Half of a plate's face, whose cut is no end of it, has its
+// place on the plate only by the three ends that are seen.
+TEST(EdgeVotes, tellWhereOnAFaceAPointLies)
+{
+  const Eigen::Vector3f half(0.045f, 0.03f, 0.004f);
+  OrientedPoints dense = face(half, 1, 0.001f, 0);
+  const OrientedPoints back = face(half, -1, 0.001f, 0);
+  dense.points.insert(dense.points.end(), back.points.begin(), back.points.end());
+  dense.normals.insert(dense.normals.end(), back.normals.begin(), back.normals.end());
+  TrainedModel model = test::modelOf(dense, LEAF, FeatureKind::Ppf);
+  model.edges = rims(half, true, 0);
+  PairSelection selection;
+  selection.min_distance = LEAF;
+  selection.references = model.table.references();
+  model.edge_table = FeatureTable(model.points, model.edges, selection, model.table.quantizer(), Executor(1));
+
+  const auto is_seen = [](const Eigen::Vector3f& p) { return p.x() > 0; };
+  const auto keep = [&](const OrientedPoints& all) {
+    std::vector<int> kept;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (is_seen(all.points[i]))
+        kept.push_back(static_cast<int>(i));
+    return select(all, kept);
+  };
+  OrientedPoints scene = keep(face(half, 1, 0.001f, 0.0004f));
+  OrientedPoints edges = keep(rims(half, false, 0.0013f));
+  std::mt19937 random(5);
+  const Pose T = test::randomPose(random, 0.3);
+  scene = voxelDownsample(transformed(scene, T), LEAF);
+  edges = transformed(edges, T);
+
+  // A plate has four poses that look the same; its middle is the same in all of them.
+  const auto numRight = [&](int edge_weight) {
+    VotingParameters voting;
+    voting.edge_weight = edge_weight;
+    voting.max_votes = 0;
+    voting.peaks_per_reference = 1;
+    const auto votes =
+        voteForPoses(model, scene, {}, edges, test::everyIndex(scene.size()), voting, Deadline(), Executor(2));
+    EXPECT_EQ(votes.hypotheses.size(), scene.size());
+    return std::count_if(votes.hypotheses.begin(), votes.hypotheses.end(), [&](const Hypothesis& h) {
+      return (h.T_camera_object * model.center - T * model.center).norm() < 2 * LEAF;
+    });
+  };
+  const auto without = numRight(0);
+  const auto with = numRight(3);
+  EXPECT_LT(without, 0.25 * static_cast<double>(scene.size()));
+  EXPECT_GT(with, 0.7 * static_cast<double>(scene.size()));
 }
 }  // namespace
 }  // namespace bin_picking

@@ -43,6 +43,10 @@ TrainedModel someModel()
   const Symmetry::Axis axis{Eigen::Vector3d::UnitY(), Eigen::Vector3d(0.01, 0, 0.02)};
   model.near_crease.assign(model.surface.size(), 0);
   model.near_crease[2] = 1;
+  model.edges = select(model.surface, {1, 3, 5, 7, 11});
+  FeatureQuantizer quantizer = model.table.quantizer();
+  quantizer.curvature_bins = 1;
+  model.edge_table = FeatureTable(model.points, model.edges, {}, quantizer, Executor(1));
   model.near_symmetries = {{rotationAbout(axis, 0.5), axis, 0.125, 0.004, true, false}};
   return model;
 }
@@ -112,6 +116,9 @@ TEST(ModelFile, roundTripKeepsEveryField)
   EXPECT_EQ(loaded->classes.low_max, saved.classes.low_max);
   EXPECT_EQ(loaded->classes.high_min, saved.classes.high_min);
   expectEqual(loaded->table, saved.table);
+  expectEqual(loaded->edges, saved.edges);
+  ASSERT_GT(saved.edge_table.numEntries(), 100u);
+  expectEqual(loaded->edge_table, saved.edge_table);
   EXPECT_EQ(loaded->remarks, saved.remarks);
   EXPECT_EQ(loaded->field.band(), saved.field.band());
   for (float x = -0.05f; x < 0.05f; x += 0.0013f)

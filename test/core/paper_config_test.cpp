@@ -87,6 +87,7 @@ TEST_P(PaperConfig, HoldsThePublishedConstants)
   EXPECT_FALSE(training.covisible_pairs);
   EXPECT_FALSE(training.fold_symmetry);
   EXPECT_FALSE(training.curvature_in_views);
+  EXPECT_FALSE(training.edge_pairs);
   EXPECT_LT(training.min_pair_distance, 0.01 * paper.leaf * MM);
   EXPECT_GT(training.min_pair_distance, 0) << "0 would mean a distance derived from the leaf";
 
@@ -98,6 +99,7 @@ TEST_P(PaperConfig, HoldsThePublishedConstants)
   const DetectorParameters& detector = configuration.detector;
   EXPECT_NEAR(detector.voting.reference_share, 1.0 / 5, 1e-12);
   EXPECT_EQ(detector.voting.max_votes, 0);
+  EXPECT_EQ(detector.voting.edge_weight, 0);
   EXPECT_FALSE(detector.voting.skip_repeated);
   EXPECT_NEAR(detector.voting.weight, paper.weight, 1e-12);
   EXPECT_NEAR(detector.verification.match_distance, 5 * MM, 1e-12);

@@ -15,14 +15,15 @@ class Executor;
 
 struct VotingParameters
 {
-  double reference_share = 0.04;
+  double reference_share = 0.03;
   int min_references = 8;
-  double max_pair_distance = 0.8;
+  double max_pair_distance = 0.7;
   int weight = 1;
+  int edge_weight = 3;
   double curvature_spread = 0.3;
   bool curvature_wildcard = true;
   int max_bucket = 0;
-  int max_votes = 60000;
+  int max_votes = 30000;
   bool skip_repeated = true;
   int peaks_per_reference = 8;
   double min_peak_share = 0.4;
@@ -70,7 +71,10 @@ std::vector<int> spreadReferences(const std::vector<Eigen::Vector3f>& points, do
 /// point takes part in four dimensions only: it meets every curvature bin \param curvature_complete per point; 0: the
 /// neighbourhood was cut off, and with curvature_wildcard the curvature counts as
 ///   unknown. Empty: all are complete
+/// \param edges edgePoints of the scene, at most one per matching leaf and direction; with edge_weight the reference
+/// points pair with them too
 VotingResult voteForPoses(const TrainedModel& model, const OrientedPoints& scene,
-                          const std::vector<std::uint8_t>& curvature_complete, const std::vector<int>& references,
-                          const VotingParameters& parameters, const Deadline& deadline, const Executor& executor);
+                          const std::vector<std::uint8_t>& curvature_complete, const OrientedPoints& edges,
+                          const std::vector<int>& references, const VotingParameters& parameters,
+                          const Deadline& deadline, const Executor& executor);
 }  // namespace bin_picking

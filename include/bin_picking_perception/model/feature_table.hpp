@@ -69,6 +69,8 @@ struct PairSelection
   /// together are stored. Empty: every pair.
   std::vector<std::uint64_t> visibility;
   std::size_t visibility_words = 0;
+  /// The same for the second points, where they are others than the first. Not used where they are the same.
+  std::vector<std::uint64_t> second_visibility;
   /// Points that are the first of a pair, ascending. Empty: every point.
   std::vector<std::uint32_t> references;
 };
@@ -99,6 +101,12 @@ public:
   FeatureTable(const OrientedPoints& points, const std::vector<std::int8_t>& weighted_class,
                const PairSelection& selection, const FeatureQuantizer& quantizer, const Executor& executor);
 
+  /// All selected pairs of a point with an edge point (Choi et al. 2012), by the four geometric dimensions: the
+  /// direction of the edge takes the place of the second normal. Every entry is weighted(). \param quantizer with one
+  /// curvature bin. \throws ParameterError as above
+  FeatureTable(const OrientedPoints& points, const OrientedPoints& edges, const PairSelection& selection,
+               const FeatureQuantizer& quantizer, const Executor& executor);
+
   /// False if no stored pair has these four dimensions: the answer for most pairs of a scene, from a bit map that stays
   /// in the nearest cache. \param geometric_key at most FeatureQuantizer::numGeometricKeys(), which has none
   bool hasCell(std::uint32_t geometric_key) const { return cells_.contains(geometric_key); }
@@ -127,6 +135,9 @@ private:
   friend struct ModelFileAccess;
   using KeyedEntry = std::pair<std::uint32_t, TableEntry>;
 
+  void checkSize(const OrientedPoints& points) const;
+  /// \param rows per reference its pairs
+  void store(std::vector<std::vector<KeyedEntry>>& rows);
   void makeCells(std::vector<std::vector<KeyedEntry>>& rows);
   void fill(std::vector<std::vector<KeyedEntry>>& rows);
 

@@ -46,6 +46,8 @@ struct TrainedModel
   std::vector<ViewTemplate> views;
   CurvatureClasses classes;
   FeatureTable table;
+  OrientedPoints edges;     ///< of its faces, each with the direction in which the face ends (edgePoints); may be none
+  FeatureTable edge_table;  ///< pairs of `points` with `edges`; its references are those of `table`
   std::vector<std::string> remarks;  ///< what training found out about the part, sentences for people
   DistanceField field;               ///< of the mesh, or of the surface points of a part without one
   std::vector<NearSymmetry> near_symmetries;
@@ -64,7 +66,7 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
 std::uint64_t requestHash(const PartDefinition& definition, const TrainingParameters& parameters);
 
 /// Version of the model file's layout; other versions are not read.
-constexpr std::uint32_t MODEL_FILE_VERSION = 4;
+constexpr std::uint32_t MODEL_FILE_VERSION = 5;
 
 /// Binary file: magic, version, hashes, payload, checksum. Written to a temporary name first, then renamed.
 /// \throws FileError cannot be written

@@ -28,6 +28,7 @@ struct TrainingParameters
   double high_curvature_min = 0;
   double min_pair_distance = 0;  // 0: 1.5 matching_leaf
   bool covisible_pairs = true;
+  bool edge_pairs = true;
   bool fold_symmetry = true;
   int num_views = 128;
   // A keyway, a flat or a hexagon on a turned part: half of what a right pose may be off (EvaluationParameters), so

@@ -18,11 +18,16 @@ struct DepthEdge
   Eigen::Vector2f outward = Eigen::Vector2f::UnitX();  ///< in the picture, away from the surface, unit
 };
 
+constexpr double MIN_EDGE = 0.5;  ///< of the leaf, noise not counted: a smaller drop in depth is no end of a part
+
 /// The edges of a grid, row by row.
 struct DepthEdges
 {
   std::vector<std::vector<DepthEdge>> rows;  ///< in order of the columns
 };
+
+/// A direction in the picture as one across the ray of `point`, unit.
+Eigen::Vector3f acrossRay(const Eigen::Vector3f& point, const Eigen::Vector2f& in_picture);
 
 /// Pixels of `grid` beside which `surroundings` (the same grid with what lies outside of the region) drop by more than
 /// `min_drop` metres. The far side is looked for over a few pixels, because sensors lose the rim itself; where nothing

@@ -21,8 +21,8 @@ struct SurfaceResampling
 };
 
 /// One point per voxel of edge `leaf`: the mean of its points, up to three where their normals differ by more than 30
-/// degrees (an edge keeps both its faces). Order: by voxel.
-OrientedPoints voxelDownsample(const OrientedPoints& dense, double leaf);
+/// degrees (an edge keeps both its faces). Means of fewer than min_points are left out. Order: by voxel.
+OrientedPoints voxelDownsample(const OrientedPoints& dense, double leaf, int min_points = 1);
 
 /// Normals by plane fits over `support` within the radius, on the side of the given normals. Neighbours whose normal
 /// differs by more than max_normal_angle do not count; where fewer than 5 remain the given normal stays.

@@ -37,6 +37,7 @@ DetectorParameters paperPreset()
   p.voting.min_references = 1;
   p.voting.max_pair_distance = 1;
   p.voting.weight = 3;
+  p.voting.edge_weight = 0;
   p.voting.curvature_spread = 0;
   p.voting.curvature_wildcard = false;
   p.voting.max_bucket = 0;
@@ -59,13 +60,14 @@ DetectorParameters accuratePreset()
   p.voting.reference_share = 0.1;
   p.voting.min_references = 40;
   p.voting.max_pair_distance = 1;
+  p.voting.max_votes = 60000;
   p.voting.peaks_per_reference = 20;
   p.voting.min_peak_share = 0.3;
   p.clustering.poses_per_reference = 4;
   p.clustering.max_clusters = 1000;
   p.verification.max_refined = 120;
   p.icp.max_iterations = 16;
-  p.verification.fruitless_rounds = 4;
+  p.verification.fruitless_rounds = 8;
   return p;
 }
 }  // namespace

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/scene/edge_points.hpp"
 #include "bin_picking_perception/scene/surface_resampling.hpp"
 #include "stages.hpp"
 
@@ -13,8 +14,8 @@ namespace bin_picking
 {
 namespace
 {
-constexpr double MIN_EDGE = 0.5;  // of the leaf: a smaller drop in depth is no end of a part
-constexpr double EDGE_NOISE = 3;  // standard deviations that are no drop
+constexpr int MIN_EDGE_PIXELS = 2;  // of an edge point: one alone may be noise
+constexpr double EDGE_NOISE = 3;    // standard deviations that are no drop
 }  // namespace
 
 PreparedScene reduceScene(const PointView& raw, const Bin* bin, const TrainedModel& model,
@@ -46,6 +47,11 @@ void describeScene(PreparedScene& scene, const TrainedModel& model, const Detect
   clock.lap("edges");
   scene.normals = estimateGridNormals(scene.grid, scene.runs, trained.normal_radius, executor);
   clock.lap("normals");
+  if (parameters.voting.edge_weight > 0 && !model.edges.empty())
+    scene.edge_points =
+        voxelDownsample(edgePoints(scene.grid, scene.normals, scene.edges), trained.matching_leaf, MIN_EDGE_PIXELS);
+  clock.count("edge points", static_cast<double>(scene.edge_points.size()));
+  clock.lap("edges");
   scene.samples = sampleScene(scene.grid, scene.normals, trained.matching_leaf, parameters.preprocessing);
   clock.count("samples", static_cast<double>(scene.samples.size()));
   clock.lap("sampling");
@@ -143,10 +149,12 @@ std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, 
                                       bool& partial)
 {
   std::vector<Hypothetical> poses;
+  const OrientedPoints no_edges;
+  const OrientedPoints& edges = scene != nullptr ? scene->edge_points : no_edges;
   for (const auto& region : regions)
   {
-    VotingResult votes = voteForPoses(model, region.samples, region.samples.curvature_complete, region.references,
-                                      parameters.voting, deadline, executor);
+    VotingResult votes = voteForPoses(model, region.samples, region.samples.curvature_complete, edges,
+                                      region.references, parameters.voting, deadline, executor);
     partial = partial || votes.partial;
     clock.count("references", static_cast<double>(votes.statistics.references));
     clock.count("pairs", static_cast<double>(votes.statistics.pairs));

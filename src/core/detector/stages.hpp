@@ -28,6 +28,7 @@ struct PreparedScene
   std::vector<Eigen::Vector3f> normals;  ///< per pixel of the working grid
   double noise = 0;                      ///< of the depth, metres
   SceneSamples samples;
+  OrientedPoints edge_points;             ///< thinned as the samples are
   std::optional<Bin> bin;                 ///< as given with the request
   const KdTree* model_surface = nullptr;  ///< of the model, to find nearest neighbours
 };

@@ -12,25 +12,23 @@ namespace bin_picking
 namespace
 {
 std::vector<BinRange> curvatureBins(const OrientedPoints& scene, const std::vector<std::uint8_t>& complete,
-                                    const std::vector<int>& order, const FeatureQuantizer& quantizer,
-                                    const VotingParameters& parameters)
+                                    const FeatureQuantizer& quantizer, const VotingParameters& parameters)
 {
   const int last = quantizer.curvature_bins - 1;
-  std::vector<BinRange> bins(order.size());
-  for (std::size_t k = 0; k < order.size() && last > 0; ++k)
+  std::vector<BinRange> bins(scene.size());
+  for (std::size_t i = 0; i < scene.size() && last > 0; ++i)
   {
-    const auto i = static_cast<std::size_t>(order[k]);
     const float q = scene.curvature[i];
     const bool known = !std::isnan(q) && (complete.empty() || complete[i] || !parameters.curvature_wildcard);
     if (!known)
     {
-      bins[k] = {0, static_cast<std::uint8_t>(last)};
+      bins[i] = {0, static_cast<std::uint8_t>(last)};
       continue;
     }
     const int bin = quantizer.curvatureBin(q);
     const double fraction = quantizer.curvatureFraction(q);
-    bins[k].first = static_cast<std::uint8_t>(std::max(0, bin - (fraction < parameters.curvature_spread)));
-    bins[k].last = static_cast<std::uint8_t>(std::min(last, bin + (fraction > 1 - parameters.curvature_spread)));
+    bins[i].first = static_cast<std::uint8_t>(std::max(0, bin - (fraction < parameters.curvature_spread)));
+    bins[i].last = static_cast<std::uint8_t>(std::min(last, bin + (fraction > 1 - parameters.curvature_spread)));
   }
   return bins;
 }
@@ -65,27 +63,30 @@ BIN_PICKING_SIMD std::size_t rankPairs(const FeatureTable& table, const std::vec
   }
   return count;
 }
-
-std::vector<std::uint32_t> inverse(const std::vector<int>& order)
-{
-  std::vector<std::uint32_t> places(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k)
-    places[static_cast<std::size_t>(order[k])] = static_cast<std::uint32_t>(k);
-  return places;
-}
 }  // namespace
 
+SecondPoints::SecondPoints(const FeatureTable& looked_up, const OrientedPoints& points,
+                           const std::vector<BinRange>& curvature_bins, double min_distance, float reach)
+    : table(looked_up),
+      tiles(points.points, reach / 4),
+      flat(points, tiles.order()),
+      flat_bins(points.size()),
+      quantizer(table.quantizer(), min_distance, static_cast<double>(reach))
+{
+  for (std::size_t k = 0; k < flat_bins.size() && !curvature_bins.empty(); ++k)
+    flat_bins[k] = curvature_bins[static_cast<std::size_t>(tiles.order()[k])];
+}
+
 VotingScene::VotingScene(const TrainedModel& trained_model, const OrientedPoints& samples,
-                         const std::vector<std::uint8_t>& curvature_complete, const VotingParameters& voting)
+                         const std::vector<std::uint8_t>& curvature_complete, const OrientedPoints& edge_points,
+                         const VotingParameters& voting)
     : model(trained_model),
       points(samples),
       parameters(voting),
       reach(static_cast<float>(voting.max_pair_distance * trained_model.diameter)),
-      tiles(samples.points, reach / 4),
-      flat(samples, tiles.order()),
-      flat_bins(curvatureBins(samples, curvature_complete, tiles.order(), model.table.quantizer(), voting)),
-      places(inverse(tiles.order())),
-      quantizer(model.table.quantizer(), model.parameters.min_pair_distance, static_cast<double>(reach))
+      curvature_bins(curvatureBins(samples, curvature_complete, model.table.quantizer(), voting)),
+      surface(model.table, samples, curvature_bins, model.parameters.min_pair_distance, reach),
+      edges(model.edge_table, edge_points, {}, model.parameters.min_pair_distance, reach)
 {}
 
 VoteCaster::VoteCaster(const VotingScene& scene)
@@ -96,34 +97,45 @@ VoteCaster::VoteCaster(const VotingScene& scene)
 
 void VoteCaster::cast(std::size_t reference, VotingStatistics& statistics)
 {
+  const VotingParameters& parameters = scene_.parameters;
+  const bool weighted = scene_.model.parameters.feature == FeatureKind::CurPpf;
   accumulator_.clear();
-  statistics.pairs += collectPairs(reference);
-  if (scene_.parameters.skip_repeated)
-    dropRepeated();
-  findEntries(scene_.flat_bins[scene_.places[reference]]);
-  statistics.votes += vote();
+  castPairs(reference, scene_.surface, scene_.curvature_bins[reference], parameters.max_votes,
+            weighted ? parameters.weight : 1, statistics);
+  if (parameters.edge_weight > 0)
+    castPairs(reference, scene_.edges, {}, 0, parameters.edge_weight, statistics);
   ++statistics.references;
 }
 
-/// \return the number of pairs within reach; kept are those with a geometry that the table holds
-std::uint64_t VoteCaster::collectPairs(std::size_t reference)
+void VoteCaster::castPairs(std::size_t reference, const SecondPoints& seconds, BinRange q1, int max_votes, int weight,
+                           VotingStatistics& statistics)
 {
-  const FeatureTable& table = scene_.model.table;
+  statistics.pairs += collectPairs(reference, seconds);
+  if (scene_.parameters.skip_repeated)
+    dropRepeated(seconds.table);
+  findEntries(seconds.table, q1);
+  statistics.votes += vote(seconds.table, max_votes, static_cast<std::uint32_t>(weight));
+}
+
+/// \return the number of pairs within reach; kept are those with a geometry that the table holds
+std::uint64_t VoteCaster::collectPairs(std::size_t reference, const SecondPoints& seconds)
+{
+  const FeatureTable& table = seconds.table;
   const std::uint32_t no_key = table.quantizer().numGeometricKeys();
   const Eigen::Vector3f& p1 = scene_.points.points[reference];
   const PairOrigin origin(p1, scene_.points.normals[reference]);
   std::uint64_t num_pairs = 0;
   std::size_t num_kept = 0;
-  scene_.tiles.forEachRun(p1, scene_.reach, [&](std::size_t begin, std::size_t end) {
+  seconds.tiles.forEachRun(p1, scene_.reach, [&](std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
     keys_.resize(std::max(keys_.size(), count));
     alphas_.resize(keys_.size());
     pairs_.resize(std::max(pairs_.size(), num_kept + count));
-    scene_.quantizer.quantize(origin, scene_.flat, begin, end, keys_.data(), alphas_.data());
+    seconds.quantizer.quantize(origin, seconds.flat, begin, end, keys_.data(), alphas_.data());
     for (std::size_t i = 0; i < count; ++i)
     {
       // Every pair is written, and the next one over it if it does not count: cheaper than a branch nobody can foresee.
-      pairs_[num_kept] = {keys_[i], alphas_[i], scene_.flat_bins[begin + i]};
+      pairs_[num_kept] = {keys_[i], alphas_[i], seconds.flat_bins[begin + i]};
       num_kept += table.hasCell(keys_[i]);
       num_pairs += keys_[i] != no_key;
     }
@@ -135,10 +147,10 @@ std::uint64_t VoteCaster::collectPairs(std::size_t reference)
 /// Two pairs of one reference with the same feature and the same step of alpha are neighbours that say the same: only
 /// the first counts. The multiplication is a bijection, so that equal hashes mean equal pairs (but for tables of more
 /// than 10^8 keys, where a vote may get lost).
-void VoteCaster::dropRepeated()
+void VoteCaster::dropRepeated(const FeatureTable& table)
 {
   constexpr std::uint32_t GOLDEN = 2654435769u;
-  const auto bins = static_cast<std::uint32_t>(scene_.model.table.quantizer().curvature_bins);
+  const auto bins = static_cast<std::uint32_t>(table.quantizer().curvature_bins);
   const unsigned bits = bitsToHold(2 * pairs_.size() + 1);
   seen_.assign(std::size_t{1} << bits, 0);
   const std::uint32_t mask = (1u << bits) - 1;
@@ -157,9 +169,8 @@ void VoteCaster::dropRepeated()
   pairs_.resize(num_kept);
 }
 
-void VoteCaster::findEntries(BinRange q1)
+void VoteCaster::findEntries(const FeatureTable& table, BinRange q1)
 {
-  const FeatureTable& table = scene_.model.table;
   matches_.resize(pairs_.size() * (q1.last - q1.first + 1u));
   matches_.resize(rankPairs(table, pairs_, q1, matches_.data()));
   // Entries lie scattered in memory and are fetched ahead of their use.
@@ -170,17 +181,14 @@ void VoteCaster::findEntries(BinRange q1)
   }
 }
 
-std::uint64_t VoteCaster::vote()
+std::uint64_t VoteCaster::vote(const FeatureTable& table, int max_votes, std::uint32_t weight)
 {
-  const FeatureTable& table = scene_.model.table;
   const VotingParameters& parameters = scene_.parameters;
   const std::uint32_t longest = parameters.max_bucket > 0 ? static_cast<std::uint32_t>(parameters.max_bucket) : ~0u;
-  const bool weighted = scene_.model.parameters.feature == FeatureKind::CurPpf;
-  const std::uint32_t weight = weighted ? static_cast<std::uint32_t>(parameters.weight) : 1;
   std::uint64_t all = 0;
   for (const TableMatch& match : matches_)
     all += match.run.size() <= longest ? match.run.size() : 0;
-  const double share = parameters.max_votes > 0 ? std::min(1.0, parameters.max_votes / static_cast<double>(all)) : 1;
+  const double share = max_votes > 0 ? std::min(1.0, max_votes / static_cast<double>(all)) : 1;
   double due = 0.5;
   std::uint64_t votes = 0;
   for (const TableMatch& match : matches_)

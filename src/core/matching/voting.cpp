@@ -23,6 +23,11 @@ void VotingParameters::visit(ParameterVisitor& v)
           max_pair_distance);
   v.field({"weight", "", "W of Equation 8, for pairs of a low- and a high-curvature point (the paper: 2 to 8)", 1, 64},
           weight);
+  v.field({"edge_weight", "",
+           "votes of a pair of a reference point and a point where a face ends; faces look the same all over but for "
+           "where they end. 0: edges do not vote, as in the paper",
+           0, 64},
+          edge_weight);
   v.field({"curvature_spread", "",
            "share of a curvature bin at either end from which the neighbouring bin is looked up too", 0, 0.5},
           curvature_spread);
@@ -171,10 +176,11 @@ struct BlockResult
 }  // namespace
 
 VotingResult voteForPoses(const TrainedModel& model, const OrientedPoints& points,
-                          const std::vector<std::uint8_t>& curvature_complete, const std::vector<int>& references,
-                          const VotingParameters& parameters, const Deadline& deadline, const Executor& executor)
+                          const std::vector<std::uint8_t>& curvature_complete, const OrientedPoints& edges,
+                          const std::vector<int>& references, const VotingParameters& parameters,
+                          const Deadline& deadline, const Executor& executor)
 {
-  const VotingScene scene(model, points, curvature_complete, parameters);
+  const VotingScene scene(model, points, curvature_complete, edges, parameters);
   CasterPool pool(scene);
 
   constexpr std::size_t BLOCK = 8;

@@ -47,13 +47,13 @@ namespace
 {
 using KeyedEntry = std::pair<std::uint32_t, TableEntry>;
 
-bool covisible(const PairSelection& selection, std::size_t i, std::size_t j)
+bool share(const std::vector<std::uint64_t>& a, std::size_t i, const std::vector<std::uint64_t>& b, std::size_t j,
+           std::size_t words)
 {
-  const std::size_t words = selection.visibility_words;
-  if (selection.visibility.empty())
+  if (a.empty())
     return true;
   for (std::size_t w = 0; w < words; ++w)
-    if (selection.visibility[i * words + w] & selection.visibility[j * words + w])
+    if (a[i * words + w] & b[j * words + w])
       return true;
   return false;
 }
@@ -64,62 +64,111 @@ bool hasFeature(const OrientedPoints& points, std::size_t i, const FeatureQuanti
   return quantizer.curvature_bins == 1 || !std::isnan(points.curvature[i]);
 }
 
-void checkSize(const OrientedPoints& points, const FeatureQuantizer& q)
+/// 0 where the key has no curvature.
+float curvatureOf(const OrientedPoints& points, std::size_t i, const FeatureQuantizer& quantizer)
 {
-  if (points.size() > FeatureTable::MAX_REFERENCES)
+  return quantizer.curvature_bins > 1 ? points.curvature[i] : 0;
+}
+
+/// Pairs with one first point.
+class PairsOf
+{
+public:
+  /// \param row index of `i` among the references
+  PairsOf(const OrientedPoints& points, std::size_t i, std::uint32_t row, double min_distance,
+          const FeatureQuantizer& quantizer)
+      : p1_(points.points[i]),
+        n1_(points.normals[i]),
+        q1_(curvatureOf(points, i, quantizer)),
+        T_local_model_(alignToLocalFrame(p1_, n1_)),
+        row_(row),
+        min_distance_(static_cast<float>(min_distance)),
+        quantizer_(quantizer)
+  {}
+
+  void add(const OrientedPoints& seconds, std::size_t j, bool weighted, std::vector<KeyedEntry>& pairs) const
+  {
+    const float q2 = curvatureOf(seconds, j, quantizer_);
+    const PairFeature f = pairFeature(p1_, n1_, q1_, seconds.points[j], seconds.normals[j], q2);
+    const std::int64_t geometric = f.distance < min_distance_ ? -1 : quantizer_.geometricKey(f);
+    if (geometric < 0)
+      return;
+    const std::uint16_t alpha = toTurnFraction(alphaInLocalFrame(T_local_model_ * seconds.points[j]));
+    pairs.emplace_back(quantizer_.key(geometric, quantizer_.curvatureBin(q1_), quantizer_.curvatureBin(q2)),
+                       TableEntry::make(row_, weighted, alpha));
+  }
+
+private:
+  const Eigen::Vector3f& p1_;
+  const Eigen::Vector3f& n1_;
+  float q1_;
+  Eigen::Isometry3f T_local_model_;
+  std::uint32_t row_;
+  float min_distance_;
+  const FeatureQuantizer& quantizer_;
+};
+
+std::vector<std::uint32_t> selectedReferences(const OrientedPoints& points, const PairSelection& selection)
+{
+  std::vector<std::uint32_t> references = selection.references;
+  if (references.empty())
+  {
+    references.resize(points.size());
+    std::iota(references.begin(), references.end(), 0u);
+  }
+  return references;
+}
+}  // namespace
+
+FeatureTable::FeatureTable(const OrientedPoints& points, const std::vector<std::int8_t>& weighted_class,
+                           const PairSelection& selection, const FeatureQuantizer& quantizer, const Executor& executor)
+    : quantizer_(quantizer), references_(selectedReferences(points, selection))
+{
+  checkSize(points);
+  std::vector<std::vector<KeyedEntry>> rows(references_.size());
+  executor.forEach(rows.size(), [&](std::size_t r) {
+    const std::size_t i = references_[r];
+    if (!hasFeature(points, i, quantizer))
+      return;
+    const PairsOf pairs(points, i, static_cast<std::uint32_t>(r), selection.min_distance, quantizer);
+    for (std::size_t j = 0; j < points.size(); ++j)
+      if (j != i && hasFeature(points, j, quantizer) &&
+          share(selection.visibility, i, selection.visibility, j, selection.visibility_words))
+        pairs.add(points, j, weighted_class[i] * weighted_class[j] == -1, rows[r]);  // Equation 8: one high, one low
+  });
+  store(rows);
+}
+
+FeatureTable::FeatureTable(const OrientedPoints& points, const OrientedPoints& edges, const PairSelection& selection,
+                           const FeatureQuantizer& quantizer, const Executor& executor)
+    : quantizer_(quantizer), references_(selectedReferences(points, selection))
+{
+  checkSize(points);
+  std::vector<std::vector<KeyedEntry>> rows(references_.size());
+  executor.forEach(rows.size(), [&](std::size_t r) {
+    const std::size_t i = references_[r];
+    const PairsOf pairs(points, i, static_cast<std::uint32_t>(r), selection.min_distance, quantizer);
+    for (std::size_t j = 0; j < edges.size(); ++j)
+      if (share(selection.visibility, i, selection.second_visibility, j, selection.visibility_words))
+        pairs.add(edges, j, true, rows[r]);
+  });
+  store(rows);
+}
+
+void FeatureTable::checkSize(const OrientedPoints& points) const
+{
+  if (points.size() > MAX_REFERENCES)
     throw ParameterError("the part has " + std::to_string(points.size()) + " points at this leaf, but at most " +
-                         std::to_string(FeatureTable::MAX_REFERENCES) + " can be stored; train with a coarser leaf");
+                         std::to_string(MAX_REFERENCES) + " can be stored; train with a coarser leaf");
+  const FeatureQuantizer& q = quantizer_;
   const double keys = std::pow(q.angle_bins, 3) * q.distance_bins * q.curvature_bins * q.curvature_bins;
   if (keys >= 4294967295.0)
     throw ParameterError("the steps d_dist, d_angle and d_cur make " + std::to_string(keys) +
                          " different features, but at most 4294967295 can be told apart; choose coarser steps");
 }
 
-/// All pairs whose first point is `i`, in order of the second. \param row index of `i` among the references
-std::vector<KeyedEntry> pairsOf(std::size_t i, std::uint32_t row, const OrientedPoints& points,
-                                const std::vector<std::int8_t>& weighted_class, const PairSelection& selection,
-                                const FeatureQuantizer& quantizer)
+void FeatureTable::store(std::vector<std::vector<KeyedEntry>>& rows)
 {
-  std::vector<KeyedEntry> pairs;
-  if (!hasFeature(points, i, quantizer))
-    return pairs;
-  const auto min_distance = static_cast<float>(selection.min_distance);
-  const Eigen::Isometry3f T_local_model = alignToLocalFrame(points.points[i], points.normals[i]);
-  const bool with_curvature = quantizer.curvature_bins > 1;
-  const float q1 = with_curvature ? points.curvature[i] : 0;
-  const int q1_bin = quantizer.curvatureBin(q1);
-  for (std::size_t j = 0; j < points.size(); ++j)
-  {
-    if (j == i || !hasFeature(points, j, quantizer) || !covisible(selection, i, j))
-      continue;
-    const float q2 = with_curvature ? points.curvature[j] : 0;
-    const PairFeature f = pairFeature(points.points[i], points.normals[i], q1, points.points[j], points.normals[j], q2);
-    const std::int64_t geometric = f.distance < min_distance ? -1 : quantizer.geometricKey(f);
-    if (geometric < 0)
-      continue;
-    const bool weighted = weighted_class[i] * weighted_class[j] == -1;  // Equation 8: one high, the other low
-    const std::uint16_t alpha = toTurnFraction(alphaInLocalFrame(T_local_model * points.points[j]));
-    pairs.emplace_back(quantizer.key(geometric, q1_bin, quantizer.curvatureBin(q2)),
-                       TableEntry::make(row, weighted, alpha));
-  }
-  return pairs;
-}
-}  // namespace
-
-FeatureTable::FeatureTable(const OrientedPoints& points, const std::vector<std::int8_t>& weighted_class,
-                           const PairSelection& selection, const FeatureQuantizer& quantizer, const Executor& executor)
-    : quantizer_(quantizer), references_(selection.references)
-{
-  checkSize(points, quantizer);
-  if (references_.empty())
-  {
-    references_.resize(points.size());
-    std::iota(references_.begin(), references_.end(), 0u);
-  }
-  std::vector<std::vector<KeyedEntry>> rows(references_.size());
-  executor.forEach(rows.size(), [&](std::size_t r) {
-    rows[r] = pairsOf(references_[r], static_cast<std::uint32_t>(r), points, weighted_class, selection, quantizer);
-  });
   makeCells(rows);
   fill(rows);
 }

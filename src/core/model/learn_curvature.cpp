@@ -13,8 +13,6 @@ namespace bin_picking
 {
 namespace
 {
-constexpr double PIXELS_PER_LEAF = 3;  // as in the scene's working grid
-
 std::vector<float> allRound(const TrainedModel& model, const OrientedPoints& points, const OrientedPoints& dense,
                             const Executor& executor)
 {
@@ -23,9 +21,10 @@ std::vector<float> allRound(const TrainedModel& model, const OrientedPoints& poi
 }
 
 /// \return the repeatability
-double takeFromViews(TrainedModel& model, const OrientedPoints& dense, const Executor& executor)
+double takeFromViews(TrainedModel& model, const OrientedPoints& dense, const std::vector<PartView>& views,
+                     const Executor& executor)
 {
-  ViewCurvature seen = curvatureInViews(model, model.parameters.leaf / PIXELS_PER_LEAF, executor);
+  ViewCurvature seen = curvatureInViews(views, model.points.size());
   std::vector<int> unseen;
   for (std::size_t i = 0; i < seen.mean.size(); ++i)
     if (std::isnan(seen.mean[i]))
@@ -57,11 +56,12 @@ double curvatureScale(const TrainingParameters& parameters)
   return parameters.curvature_measure == CurvatureMeasure::MeanCurvature ? 1 / parameters.curvature_radius : 1.0;
 }
 
-int learnCurvature(TrainedModel& model, const OrientedPoints& dense, const Executor& executor)
+int learnCurvature(TrainedModel& model, const OrientedPoints& dense, const std::vector<PartView>& views,
+                   const Executor& executor)
 {
   double repeatability = 0;
-  if (model.parameters.curvature_in_views && !model.mesh.empty())
-    repeatability = takeFromViews(model, dense, executor);
+  if (model.parameters.curvature_in_views && !views.empty())
+    repeatability = takeFromViews(model, dense, views, executor);
   else
     model.points.curvature = allRound(model, model.points, dense, executor);
   const double range = curvatureRange(model.points.curvature);

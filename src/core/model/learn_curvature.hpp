@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
-#include "bin_picking_perception/model/trained_model.hpp"
+#include <vector>
+
+#include "part_views.hpp"
 
 namespace bin_picking
 {
@@ -10,6 +12,8 @@ namespace bin_picking
 double curvatureScale(const TrainingParameters& parameters);
 
 /// Fills the curvature of the model's points, settles whether `auto` uses it, and remarks why.
-/// \param dense the whole surface. \return number of curvature bins, if no step is given
-int learnCurvature(TrainedModel& model, const OrientedPoints& dense, const Executor& executor);
+/// \param dense the whole surface. \param views of the part; none: curvature is taken all around. \return number of
+/// curvature bins, if no step is given
+int learnCurvature(TrainedModel& model, const OrientedPoints& dense, const std::vector<PartView>& views,
+                   const Executor& executor);
 }  // namespace bin_picking

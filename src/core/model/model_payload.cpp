@@ -194,6 +194,8 @@ std::vector<char> writePayload(const TrainedModel& model)
   out.value(model.classes.low_max);
   out.value(model.classes.high_min);
   ModelFileAccess::write(out, model.table);
+  write(out, model.edges);
+  ModelFileAccess::write(out, model.edge_table);
   write(out, model.remarks);
   ModelFileAccess::write(out, model.field);
   write(out, model.near_symmetries);
@@ -236,6 +238,10 @@ std::shared_ptr<const TrainedModel> readPayload(const char* begin, std::size_t s
   model->classes.low_max = in.value<double>();
   model->classes.high_min = in.value<double>();
   model->table = ModelFileAccess::read(in, model->points.size());
+  model->edges = readPoints(in);
+  model->edge_table = ModelFileAccess::read(in, model->points.size());
+  require(model->edge_table.references() == model->table.references() || model->edges.empty(),
+          "surface and edges have different references");
   model->remarks = readTexts(in);
   model->field = ModelFileAccess::readField(in);
   model->near_symmetries = readNearSymmetries(in);

@@ -12,6 +12,7 @@
 #include "bin_picking_perception/scene/surface_resampling.hpp"
 #include "compare_with_itself.hpp"
 #include "creases.hpp"
+#include "edge_model.hpp"
 #include "learn_curvature.hpp"
 
 namespace bin_picking
@@ -206,11 +207,15 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
   const std::size_t words = (model->views.size() + 63) / 64;
   std::vector<std::uint64_t> visibility = keepVisible(model->points, *model, words);
   checkPoints(*model);
-  const int curvature_bins = learnCurvature(*model, dense, executor);
+  const bool with_views = p.curvature_in_views || p.edge_pairs;
+  const std::vector<PartView> views = with_views ? measureViews(*model, executor) : std::vector<PartView>();
+  const int curvature_bins = learnCurvature(*model, dense, views, executor);
   if (!p.covisible_pairs)
     visibility.clear();
   report("feature table");
   buildTable(*model, visibility, words, curvature_bins, executor);
+  if (p.edge_pairs && !views.empty())
+    learnEdges(*model, views, executor);
   return model;
 }
 }  // namespace bin_picking

@@ -58,6 +58,11 @@ void TrainingParameters::visit(ParameterVisitor& v)
            0.2},
           min_pair_distance);
   v.field({"covisible_pairs", "", "store only pairs of points that one camera can see together"}, covisible_pairs);
+  v.field(
+      {"edge_pairs", "",
+       "store also pairs of a surface point and a point where a face ends, for voting/edge_weight; a point model has "
+       "none"},
+      edge_pairs);
   v.field({"fold_symmetry", "", "of points that are symmetric images of each other one is the reference of pairs"},
           fold_symmetry);
   v.field({"num_views", "", "directions from which the part is rendered", 12, 4096}, num_views);

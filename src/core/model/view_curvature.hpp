@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bin_picking_perception/model/trained_model.hpp"
+#include "part_views.hpp"
 
 namespace bin_picking
 {
@@ -21,7 +21,6 @@ struct ViewCurvature
   double repeatability = 0;
 };
 
-/// \param model its mesh, points, normals and parameters are used
-/// \param pixel of the views, metres: that of the scene's working grid
-ViewCurvature curvatureInViews(const TrainedModel& model, double pixel, const Executor& executor);
+/// \param num_points of the model
+ViewCurvature curvatureInViews(const std::vector<PartView>& views, std::size_t num_points);
 }  // namespace bin_picking

@@ -33,9 +33,7 @@ struct PartBox
 void addEdge(const DepthGrid& grid, int pixel, const Eigen::Vector2f& outward, OrientedPoints& edges)
 {
   const Eigen::Vector3f p = grid.point(pixel);
-  const Eigen::Vector3f ray = p.normalized();
-  const Eigen::Vector3f in_picture(outward.x(), outward.y(), 0);
-  const Eigen::Vector3f across = (in_picture - ray.dot(in_picture) * ray).normalized();
+  const Eigen::Vector3f across = acrossRay(p, outward);
   edges.points.push_back(p + 0.5f * static_cast<float>(grid.pitch(static_cast<double>(p.z()))) * across);
   edges.normals.push_back(across);
 }

@@ -77,6 +77,13 @@ private:
 };
 }  // namespace
 
+Eigen::Vector3f acrossRay(const Eigen::Vector3f& point, const Eigen::Vector2f& in_picture)
+{
+  const Eigen::Vector3f ray = point.normalized();
+  const Eigen::Vector3f direction(in_picture.x(), in_picture.y(), 0);
+  return (direction - ray.dot(direction) * ray).normalized();
+}
+
 DepthEdges findDepthEdges(const DepthGrid& grid, const DepthGrid& surroundings, const ConnectedRuns& runs,
                           double min_drop, const Executor& executor)
 {

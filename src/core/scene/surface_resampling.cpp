@@ -55,7 +55,7 @@ void addToGroups(std::vector<Group>& groups, const Eigen::Vector3f& point, const
 }
 }  // namespace
 
-OrientedPoints voxelDownsample(const OrientedPoints& dense, double leaf)
+OrientedPoints voxelDownsample(const OrientedPoints& dense, double leaf, int min_points)
 {
   std::vector<Voxel> voxels(dense.size());
   const auto scale = static_cast<float>(1.0 / leaf);
@@ -77,6 +77,8 @@ OrientedPoints voxelDownsample(const OrientedPoints& dense, double leaf)
       continue;
     for (const auto& group : groups)
     {
+      if (group.count < static_cast<float>(min_points))
+        continue;
       result.points.push_back(group.point / group.count);
       result.normals.push_back(group.normal.normalized());
     }
