@@ -67,8 +67,8 @@ TEST(EdgePoints, lieOnTheRimOfAPlateAndPointOutOfIt)
       EXPECT_LT(std::abs(outward.z()), 0.05f) << "in the plate's plane";
       EXPECT_NEAR(outward.norm(), 1, 1e-5);
       const bool is_end = std::abs(p.x()) - 0.03f > std::abs(p.y()) - 0.02f;
-      const Eigen::Vector3f side =
-          is_end ? Eigen::Vector3f(std::copysign(1.0f, p.x()), 0, 0) : Eigen::Vector3f(0, std::copysign(1.0f, p.y()), 0);
+      const Eigen::Vector3f side = is_end ? Eigen::Vector3f(std::copysign(1.0f, p.x()), 0, 0)
+                                          : Eigen::Vector3f(0, std::copysign(1.0f, p.y()), 0);
       ++per_side[is_end ? (p.x() > 0 ? 0 : 1) : (p.y() > 0 ? 2 : 3)];
       askew += outward.dot(side) < 0.9f;
     }
@@ -161,7 +161,8 @@ TEST(EdgeModel, aBoxHasTheEdgesOfItsFaces)
     const int side = 2 * along + (model->edges.normals[i][along] > 0);
     for (int axis = 0; axis < 3; ++axis)
       if (axis != along && std::abs(inside[axis]) < PLACE)
-        ++found[static_cast<std::size_t>(2 * axis + (model->edges.points[i][axis] > 0))][static_cast<std::size_t>(side)];
+        ++found[static_cast<std::size_t>(2 * axis + (model->edges.points[i][axis] > 0))]
+               [static_cast<std::size_t>(side)];
   }
   EXPECT_LT(beside, 0.05 * static_cast<double>(model->edges.size()));
   EXPECT_LT(at_corners, static_cast<int>(model->edges.size()) / 3);

@@ -31,8 +31,8 @@ TileIndex::TileIndex(const std::vector<Eigen::Vector3f>& points, float tile) : t
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     const auto row = static_cast<std::size_t>(column(points[i].y(), low_.y(), rows_));
-    tile_of[i] = row * static_cast<std::size_t>(columns_) +
-                 static_cast<std::size_t>(column(points[i].x(), low_.x(), columns_));
+    tile_of[i] =
+        row * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column(points[i].x(), low_.x(), columns_));
     ++starts_[tile_of[i] + 1];
   }
   for (std::size_t t = 1; t < starts_.size(); ++t)

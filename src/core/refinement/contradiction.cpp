@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "bin_picking_perception/refinement/rivals.hpp"
@@ -24,7 +25,9 @@ PixelWindow windowAround(const TrainedModel& model, const Pose& T_camera_object,
   return {grid, T_camera_object * model.center, REACH * model.diameter, MAX_SCENE_POINTS};
 }
 
-/// Measured points around a pose, in the part's frame.
+constexpr std::size_t LOOKS = 4;  // that the points are divided into, all over the place in each
+
+/// Measured points around a pose, in the part's frame: every fourth of them, the next ones, and so on.
 std::vector<Eigen::Vector3f> measuredAround(const TrainedModel& model, const Pose& T_camera_object,
                                             const DepthGrid& grid)
 {
@@ -35,7 +38,12 @@ std::vector<Eigen::Vector3f> measuredAround(const TrainedModel& model, const Pos
     for (int u = window.u_begin; u < window.u_end; u += window.step)
       if (grid.valid(grid.index(u, v)))
         points.push_back(T_object_camera * grid.point(grid.index(u, v)));
-  return points;
+  std::vector<Eigen::Vector3f> ordered;
+  ordered.reserve(points.size());
+  for (std::size_t look = 0; look < LOOKS; ++look)
+    for (std::size_t i = look; i < points.size(); i += LOOKS)
+      ordered.push_back(points[i]);
+  return ordered;
 }
 
 /// The sensor looked through the point: everything measured on its ray and beside it lies behind.
@@ -71,12 +79,32 @@ Contradiction::Contradiction(const TrainedModel& model, const Pose& T_camera_obj
 
 std::vector<double> Contradiction::ofAll(const std::vector<Pose>& turns)
 {
-  std::vector<double> against = offSurfaceOfAll(turns);
-  double least = std::numeric_limits<double>::infinity();
+  std::vector<Turn> all(turns.size());
   for (std::size_t k = 0; k < turns.size(); ++k)
+    all[k] = {k, turns[k].inverse().cast<float>(), 0};
+  // Some of the points tell which turns are out of the question; all of them, how the others compare.
+  std::vector<Eigen::Vector3f> concerned;
+  const std::size_t first_look = points_.size() / LOOKS;
+  addOffSurface(0, first_look, all, concerned);
+  std::vector<double> against(turns.size());
+  double least = std::numeric_limits<double>::infinity();
+  for (const Turn& turn : all)
   {
-    against[k] += seenThrough(turns[k], least + MOST_MARGIN - against[k]);
-    least = std::min(least, against[k]);
+    against[turn.index] = LOOKS * turn.off_surface;
+    least = std::min(least, against[turn.index]);
+  }
+  const auto is_likely = [&](const Turn& turn) { return against[turn.index] < least + 2 * MOST_MARGIN; };
+  std::vector<Turn> likely;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(likely), is_likely);
+  addOffSurface(first_look, points_.size(), likely, concerned);
+  points_ = std::move(concerned);
+
+  least = std::numeric_limits<double>::infinity();
+  for (const Turn& turn : likely)
+  {
+    const double enough = least + MOST_MARGIN - turn.off_surface;
+    against[turn.index] = turn.off_surface + seenThrough(turns[turn.index], enough);
+    least = std::min(least, against[turn.index]);
   }
   return against;
 }
@@ -96,33 +124,26 @@ double Contradiction::cost(float distance) const
   return static_cast<double>(std::min(residual * residual, OUTLIER));
 }
 
-std::vector<double> Contradiction::offSurfaceOfAll(const std::vector<Pose>& turns)
+void Contradiction::addOffSurface(std::size_t begin, std::size_t end, std::vector<Turn>& turns,
+                                  std::vector<Eigen::Vector3f>& concerned) const
 {
-  std::vector<Eigen::Isometry3f> motions(turns.size());
-  std::transform(turns.begin(), turns.end(), motions.begin(),
-                 [](const Pose& turn) { return turn.inverse().cast<float>(); });
-  std::vector<double> sums(turns.size(), 0);
   std::vector<double> costs(turns.size());
-  std::vector<Eigen::Vector3f> concerned;
-  for (const Eigen::Vector3f& p : points_)
+  for (std::size_t i = begin; i < end; ++i)
   {
+    const Eigen::Vector3f& p = points_[i];
     float nearest = model_.field.band();
-    for (std::size_t k = 0; k < motions.size(); ++k)
+    for (std::size_t k = 0; k < turns.size(); ++k)
     {
-      const float distance = model_.field.at(motions[k] * p);
+      const float distance = model_.field.at(turns[k].T_turned_object * p);
       nearest = std::min(nearest, std::abs(distance));
       costs[k] = cost(distance);
     }
     if (nearest >= NEAR * model_.field.band())
       continue;
     concerned.push_back(p);
-    for (std::size_t k = 0; k < sums.size(); ++k)
-      sums[k] += costs[k];
+    for (std::size_t k = 0; k < turns.size(); ++k)
+      turns[k].off_surface += 0.5 * area_per_point_ * costs[k];
   }
-  points_ = std::move(concerned);
-  for (double& sum : sums)
-    sum *= 0.5 * area_per_point_;
-  return sums;
 }
 
 double Contradiction::seenThrough(const Pose& turn, double enough) const

@@ -27,8 +27,17 @@ public:
   double operator()(const Pose& turn) const;
 
 private:
+  struct Turn
+  {
+    std::size_t index;
+    Eigen::Isometry3f T_turned_object;
+    double off_surface;
+  };
+
   double cost(float distance) const;
-  std::vector<double> offSurfaceOfAll(const std::vector<Pose>& turns);
+  /// Of points_ [begin, end). \param concerned receives those that lie near the surface of a turn
+  void addOffSurface(std::size_t begin, std::size_t end, std::vector<Turn>& turns,
+                     std::vector<Eigen::Vector3f>& concerned) const;
   /// \param enough where the search may end
   double seenThrough(const Pose& turn, double enough) const;
 
