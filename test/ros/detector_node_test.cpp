@@ -260,38 +260,6 @@ TEST_F(DetectorNodeTest, TuningChangesTheNextAnswer)
   expectGoodAnswer();
 }
 
-TEST_F(DetectorNodeTest, ContinuousProcessingAndEndWhileACallWaits)
-{
-  ros::NodeHandle nh("second");
-  ros::NodeHandle private_nh("second/detector");
-  setParameters(private_nh);
-  private_nh.setParam("process", "continuous");
-  auto second = std::make_unique<DetectorNode>(nh, private_nh);
-  test_clouds::VirtualCamera camera(nh, "points");
-  camera.start(makeMessage(scene_->grid));
-  boost::shared_ptr<const bin_picking_perception::DetectionArray> detections;
-  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(PATIENCE);
-  do  // NOT_READY first
-    detections = receive<bin_picking_perception::DetectionArray>("/second/detector/detections");
-  while (detections && detections->code.value == ReturnCode::NOT_READY && ros::WallTime::now() < end);
-  camera.stop();
-  ASSERT_TRUE(detections);
-  ASSERT_EQ(detections->code.value, ReturnCode::OK) << detections->code.message;
-  expectTruth(fromMessage(detections->detections[0].pose));
-
-  ros::ServiceClient client = private_nh.serviceClient<GetBestGrasp>("get_best_grasp");
-  auto call = std::async(std::launch::async, [&client] {
-    GetBestGrasp waiting;  // for a cloud that never comes
-    EXPECT_TRUE(client.call(waiting)) << "the connection was cut before the answer";
-    return waiting.response.code.value;
-  });
-  ASSERT_EQ(call.wait_for(std::chrono::seconds(1)), std::future_status::timeout) << "the call does not wait";
-  second.reset();
-  ASSERT_EQ(call.wait_for(std::chrono::seconds(10)), std::future_status::ready)
-      << "the end of the node hangs behind a call";
-  EXPECT_EQ(call.get(), ReturnCode::NOT_READY);
-}
-
 TEST_F(DetectorNodeTest, GraspsOfAPartWhoseTurnIsOpenAreForThoseWhoAcceptThem)
 {
   ros::NodeHandle nh("shafts");
@@ -335,6 +303,40 @@ TEST_F(DetectorNodeTest, WrongParametersAreRefusedAtTheStart)
   private_nh.deleteParam("bin");
   private_nh.setParam("max_agee", 2);
   EXPECT_THROW(DetectorNode(nh, private_nh), bin_picking::Error);
+}
+
+// The last: on a busy machine about one in five hundred first calls to another service of the process fails right after
+// a node has ended while a call waited.
+TEST_F(DetectorNodeTest, ContinuousProcessingAndEndWhileACallWaits)
+{
+  ros::NodeHandle nh("second");
+  ros::NodeHandle private_nh("second/detector");
+  setParameters(private_nh);
+  private_nh.setParam("process", "continuous");
+  auto second = std::make_unique<DetectorNode>(nh, private_nh);
+  test_clouds::VirtualCamera camera(nh, "points");
+  camera.start(makeMessage(scene_->grid));
+  boost::shared_ptr<const bin_picking_perception::DetectionArray> detections;
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(PATIENCE);
+  do  // NOT_READY first
+    detections = receive<bin_picking_perception::DetectionArray>("/second/detector/detections");
+  while (detections && detections->code.value == ReturnCode::NOT_READY && ros::WallTime::now() < end);
+  camera.stop();
+  ASSERT_TRUE(detections);
+  ASSERT_EQ(detections->code.value, ReturnCode::OK) << detections->code.message;
+  expectTruth(fromMessage(detections->detections[0].pose));
+
+  ros::ServiceClient client = private_nh.serviceClient<GetBestGrasp>("get_best_grasp");
+  auto call = std::async(std::launch::async, [&client] {
+    GetBestGrasp waiting;  // for a cloud that never comes
+    EXPECT_TRUE(client.call(waiting)) << "the connection was cut before the answer";
+    return waiting.response.code.value;
+  });
+  ASSERT_EQ(call.wait_for(std::chrono::seconds(1)), std::future_status::timeout) << "the call does not wait";
+  second.reset();
+  ASSERT_EQ(call.wait_for(std::chrono::seconds(10)), std::future_status::ready)
+      << "the end of the node hangs behind a call";
+  EXPECT_EQ(call.get(), ReturnCode::NOT_READY);
 }
 }  // namespace
 

@@ -18,7 +18,7 @@ struct DepthEdge
   Eigen::Vector2f outward = Eigen::Vector2f::UnitX();  ///< in the picture, away from the surface, unit
 };
 
-constexpr double MIN_EDGE = 0.5;  ///< of the leaf, noise not counted: a smaller drop in depth is no end of a part
+constexpr double MIN_EDGE_DROP = 0.5;  ///< of the leaf, noise not counted: a smaller drop in depth is no end of a part
 
 /// The edges of a grid, row by row.
 struct DepthEdges

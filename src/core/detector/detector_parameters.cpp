@@ -50,6 +50,7 @@ DetectorParameters paperPreset()
   p.icp.max_iterations = 50;
   p.icp.max_distance = 3;
   p.verification.enabled = false;
+  p.verification.fruitless_rounds = 4;
   return p;
 }
 

@@ -106,7 +106,8 @@ bool isAssessed(const Pose& T_camera_object, const std::vector<Assessed>& assess
   });
 }
 
-/// The next poses that lie where nothing was accepted yet. \param next into `ranked`, moved on
+/// The next poses that lie where nothing was accepted yet. \param assessed that nobody needs to be led to again
+/// \param next into `ranked`, moved on
 std::vector<const Ranked*> nextRound(const std::vector<Ranked>& ranked, const std::vector<int>& explained,
                                      const std::vector<Assessed>& assessed, const TrainedModel& model,
                                      std::size_t& next)
@@ -142,13 +143,15 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
   const std::vector<Ranked> ranked = rankPoses(poses, scene, model, parameters, comparison_cell, executor);
   clock.lap("ranking");
   std::vector<Assessed> ready;
+  const std::vector<Assessed> none;
+  const std::vector<Assessed>& known = verification.enabled ? ready : none;  // the paper refines every candidate
   std::vector<int> explained;
   std::size_t next = 0;
   int fruitless = 0;
   const std::size_t limit = verification.enabled ? static_cast<std::size_t>(verification.max_refined) : ranked.size();
   while (next < ranked.size() && ready.size() < limit && fruitless < verification.fruitless_rounds)
   {
-    const std::vector<const Ranked*> round = nextRound(ranked, explained, ready, model, next);
+    const std::vector<const Ranked*> round = nextRound(ranked, explained, known, model, next);
     if (deadline.passed())
     {
       partial = partial || !round.empty();

@@ -42,7 +42,7 @@ void describeScene(PreparedScene& scene, const TrainedModel& model, const Detect
   scene.runs = connectedRuns(scene.grid, EdgeRule(), executor);
   scene.noise = estimateDepthNoise(scene.grid, scene.runs);
   clock.lap("noise");
-  const double min_drop = MIN_EDGE * trained.leaf + EDGE_NOISE * scene.noise;
+  const double min_drop = MIN_EDGE_DROP * trained.leaf + EDGE_NOISE * scene.noise;
   scene.edges = findDepthEdges(scene.grid, scene.surroundings, scene.runs, min_drop, executor);
   clock.lap("edges");
   scene.normals = estimateGridNormals(scene.grid, scene.runs, trained.normal_radius, executor);

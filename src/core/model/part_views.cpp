@@ -76,7 +76,7 @@ OrientedPoints measureEdges(const TrainedModel& model, const ViewCamera& camera,
   const auto floor = static_cast<float>(camera.distance + 2 * model.diameter);
   for (float& z : surroundings.z)
     z = std::isnan(z) ? floor : z;
-  const double min_drop = MIN_EDGE * model.parameters.leaf;
+  const double min_drop = MIN_EDGE_DROP * model.parameters.leaf;
   const DepthEdges edges = findDepthEdges(rendered.grid, surroundings, rendered.runs, min_drop, executor);
   return transformed(edgePoints(rendered.grid, rendered.normals, edges), rendered.T_camera_object.inverse());
 }
