@@ -52,15 +52,24 @@ bool isSmallTurn(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b)
   return a.cwiseProduct(b).sum() > 1 + 2 * COSINE;  // the trace of a^T b
 }
 
-/// The same place and the same turn, modulo the part's symmetry. Poses that a near symmetry leads to are others: of
-/// these rivals the one that ranks first need not be the one that ends at the right turn.
+/// The same place and the same turn, modulo the part's symmetry and turns that are slight: which of these it is, the
+/// rivals tell. Of poses that other near symmetries lead to, the one that ranks first need not end at the right turn.
 bool samePlace(const Pose& a, const Pose& b, const TrainedModel& model)
 {
   const double near_enough = SAME_DISTANCE * model.diameter;
-  if ((a * model.center - b * model.center).squaredNorm() > near_enough * near_enough)
+  const Eigen::Vector3d center = b.linear().transpose() * (a * model.center - b.translation());  // as b sees it
+  if ((center - model.center).squaredNorm() > model.diameter * model.diameter)
     return false;
-  const Pose nearest = model.symmetry.trivial() ? b : nearestEquivalent(b, a, model.symmetry);
-  return isSmallTurn(a.linear(), nearest.linear());
+  const auto same = [&](const Pose& turn) {
+    if ((center - turn * model.center).squaredNorm() > near_enough * near_enough)
+      return false;
+    const Pose other = b * turn;
+    const Pose nearest = model.symmetry.trivial() ? other : nearestEquivalent(other, a, model.symmetry);
+    return isSmallTurn(a.linear(), nearest.linear());
+  };
+  return same(Pose::Identity()) ||
+         std::any_of(model.near_symmetries.begin(), model.near_symmetries.end(),
+                     [&](const NearSymmetry& near) { return near.slight && same(near.T_object_object); });
 }
 
 /// All poses, most promising first, each place once.
