@@ -108,6 +108,9 @@ void printSummary(TrainedModel model, double seconds, const std::string& path)
                           " on the surface, " + std::to_string(model.views.size()) + " views");
   printLine("pairs", std::to_string(model.table.numEntries()) + " under " + std::to_string(model.table.numKeys()) +
                          " features, " + roundedText(static_cast<double>(model.table.bytes()) / 1048576, 1) + " MiB");
+  printLine("edges", std::to_string(model.edges.size()) + " points where faces end, in " +
+                         std::to_string(model.edge_table.numEntries()) + " pairs, " +
+                         roundedText(static_cast<double>(model.edge_table.bytes()) / 1048576, 1) + " MiB");
   printLine("low curvature", "up to " + roundedText(model.classes.low_max, 1));
   printLine("high curvature", "above " + roundedText(model.classes.high_min, 1));
   for (const ParameterEntry& entry : listParameters(visitor(model.parameters)))

@@ -155,8 +155,8 @@ TEST_F(CommandLine, SceneHasItsTruthBesideIt)
 TEST_F(CommandLine, TrainSummarizesThePart)
 {
   ASSERT_EQ(made_model_.exit_code, 0) << made_model_.text;
-  for (const std::string words :
-       {"three_way_tube", "90.0 x 35.0 x 67.5 mm", "0 open edges", "2 equal attitudes", "leaf", "pairs", "MiB"})
+  for (const std::string words : {"three_way_tube", "90.0 x 35.0 x 67.5 mm", "0 open edges", "2 equal attitudes",
+                                  "leaf", "pairs", "points where faces end", "MiB"})
     EXPECT_NE(made_model_.text.find(words), std::string::npos) << words << "\n" << made_model_.text;
 }
 

@@ -64,8 +64,9 @@ void measurePoints(const TrainedModel& model, const ViewCamera& camera, const Re
     view.samples.normals.push_back(rendered.normals[k]);
     view.samples.pixel.push_back(pixel);
   }
-  estimateGridCurvature(view.samples, rendered.grid, rendered.runs, rendered.normals, p.curvature_measure,
-                        p.curvature_radius, OPPOSITE_WALL_ANGLE, executor);
+  if (p.curvature_in_views)
+    estimateGridCurvature(view.samples, rendered.grid, rendered.runs, rendered.normals, p.curvature_measure,
+                          p.curvature_radius, OPPOSITE_WALL_ANGLE, executor);
 }
 
 /// The edges of the faces, as if a floor lay far behind the part.
@@ -95,7 +96,8 @@ std::vector<PartView> measureViews(const TrainedModel& model, const Executor& ex
     const Executor this_thread(1);  // the views run beside each other
     const Rendered rendered = render(model, camera, directions[v], this_thread);
     measurePoints(model, camera, rendered, this_thread, views[v]);
-    views[v].edges = measureEdges(model, camera, rendered, this_thread);
+    if (model.parameters.edge_pairs)
+      views[v].edges = measureEdges(model, camera, rendered, this_thread);
   });
   return views;
 }

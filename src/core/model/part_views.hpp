@@ -13,8 +13,8 @@ namespace bin_picking
 struct PartView
 {
   std::vector<std::size_t> points;  ///< of TrainedModel::points: those that the view sees
-  SceneSamples samples;             ///< one per such point, with curvature, camera frame
-  OrientedPoints edges;             ///< edgePoints, part frame
+  SceneSamples samples;             ///< one per such point, camera frame, with curvature if it is taken from views
+  OrientedPoints edges;             ///< edgePoints, part frame, if training stores pairs with them
 };
 
 /// Views from all around, so many that each has a bit of 64. \param model its mesh, points, normals and parameters are

@@ -25,9 +25,7 @@ PixelWindow windowAround(const TrainedModel& model, const Pose& T_camera_object,
   return {grid, T_camera_object * model.center, REACH * model.diameter, MAX_SCENE_POINTS};
 }
 
-constexpr std::size_t LOOKS = 4;  // that the points are divided into, all over the place in each
-
-/// Measured points around a pose, in the part's frame: every fourth of them, the next ones, and so on.
+/// Measured points around a pose, in the part's frame.
 std::vector<Eigen::Vector3f> measuredAround(const TrainedModel& model, const Pose& T_camera_object,
                                             const DepthGrid& grid)
 {
@@ -38,6 +36,14 @@ std::vector<Eigen::Vector3f> measuredAround(const TrainedModel& model, const Pos
     for (int u = window.u_begin; u < window.u_end; u += window.step)
       if (grid.valid(grid.index(u, v)))
         points.push_back(T_object_camera * grid.point(grid.index(u, v)));
+  return points;
+}
+
+constexpr std::size_t LOOKS = 4;  // that the points are divided into
+
+/// Every fourth point, the next ones, and so on, so that the first quarter lies all over the place.
+std::vector<Eigen::Vector3f> inLooks(const std::vector<Eigen::Vector3f>& points)
+{
   std::vector<Eigen::Vector3f> ordered;
   ordered.reserve(points.size());
   for (std::size_t look = 0; look < LOOKS; ++look)
@@ -71,7 +77,7 @@ Contradiction::Contradiction(const TrainedModel& model, const Pose& T_camera_obj
       T_camera_object_(T_camera_object),
       surroundings_(surroundings),
       tolerance_(tolerance),
-      points_(measuredAround(model, T_camera_object, grid)),
+      points_(inLooks(measuredAround(model, T_camera_object, grid))),
       area_per_point_(std::pow(windowAround(model, T_camera_object, grid).step *
                                    grid.pitch((T_camera_object * model.center).z()) / model.parameters.leaf,
                                2))
@@ -93,9 +99,10 @@ std::vector<double> Contradiction::ofAll(const std::vector<Pose>& turns)
     against[turn.index] = LOOKS * turn.off_surface;
     least = std::min(least, against[turn.index]);
   }
-  const auto is_likely = [&](const Turn& turn) { return against[turn.index] < least + 2 * MOST_MARGIN; };
+  const double limit = least + 2 * MOST_MARGIN;
   std::vector<Turn> likely;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(likely), is_likely);
+  std::copy_if(all.begin(), all.end(), std::back_inserter(likely),
+               [limit](const Turn& turn) { return LOOKS * turn.off_surface < limit; });
   addOffSurface(first_look, points_.size(), likely, concerned);
   points_ = std::move(concerned);
 
@@ -106,6 +113,10 @@ std::vector<double> Contradiction::ofAll(const std::vector<Pose>& turns)
     against[turn.index] = turn.off_surface + seenThrough(turns[turn.index], enough);
     least = std::min(least, against[turn.index]);
   }
+  // The others were not looked through: none of them may pass for the best.
+  for (const Turn& turn : all)
+    if (LOOKS * turn.off_surface >= limit)
+      against[turn.index] = std::max(against[turn.index], least + MOST_MARGIN);
   return against;
 }
 
