@@ -46,12 +46,12 @@ BENCHMARK(pointsInView)->Unit(benchmark::kMillisecond);
 void evidence(benchmark::State& state)
 {
   const Workbench& bench = workbench();
-  std::vector<SurfaceIndices> visible;
+  std::vector<TestPoints> visible;
   for (const Pose& pose : bench.poses)
-    visible.push_back(thinned(visiblePoints(*bench.model, pose), TEST_POINTS));
+    visible.push_back(testPoints(*bench.model, thinned(visiblePoints(*bench.model, pose), TEST_POINTS)));
   std::size_t k = 0;
   forEachPose(state, [&](const Pose& pose) {
-    benchmark::DoNotOptimize(gatherEvidence(*bench.model, visible[k++ % visible.size()], pose, bench.scene.grid,
+    benchmark::DoNotOptimize(gatherEvidence(visible[k++ % visible.size()], pose, bench.scene.grid,
                                             bench.scene.surroundings, bench.scene.normals, bench.tolerance,
                                             bench.parameters.verification));
   });

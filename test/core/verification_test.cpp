@@ -34,8 +34,8 @@ Scene sceneOf(const std::vector<Pose>& poses, double sigma)
 
 PoseEvidence evidenceOf(const Scene& scene, const Pose& T)
 {
-  return gatherEvidence(*test::teeModel(), facingPoints(*test::teeModel(), T, 2000), T, scene.grid, scene.surroundings,
-                        scene.normals, 0.0015, {});
+  return gatherEvidence(testPoints(*test::teeModel(), facingPoints(*test::teeModel(), T, 2000)), T, scene.grid,
+                        scene.surroundings, scene.normals, 0.0015, {});
 }
 
 OutlineEvidence outlineOf(const Scene& scene, const Pose& T)
@@ -97,7 +97,7 @@ TEST(Evidence, countsAFaceByItsShareOfThePicture)
     Pose T = Pose::Identity();
     T.linear() = Eigen::AngleAxisd(M_PI + tilt, Eigen::Vector3d::UnitX()).toRotationMatrix();
     T.translation().z() = 3;  // far: nearly parallel rays
-    return gatherEvidence(plate, allPoints(plate.surface), T, nothing, nothing, normals, 0.001, {}).facing;
+    return gatherEvidence(testPoints(plate, allPoints(plate.surface)), T, nothing, nothing, normals, 0.001, {}).facing;
   };
   EXPECT_NEAR(facing(80 * M_PI / 180) / facing(0), std::cos(80 * M_PI / 180), 0.02);
 }

@@ -71,17 +71,29 @@ using SurfaceIndices = std::vector<std::uint32_t>;
 /// Every step-th surface point of the nearest view so that about max_points remain.
 SurfaceIndices facingPoints(const TrainedModel& model, const Pose& T_camera_object, std::size_t max_points);
 
+/// Points of a part's surface that poses are tested with: metres, part frame, one plane per coordinate.
+struct TestPoints
+{
+  std::vector<float> x, y, z;
+  std::vector<float> nx, ny, nz;
+  std::vector<std::uint8_t> near_crease;  ///< TrainedModel::near_crease
+
+  std::size_t size() const { return x.size(); }
+};
+
+TestPoints testPoints(const TrainedModel& model, const SurfaceIndices& indices);
+
 /// facingPoints() of many poses: chosen once for each view. The model must outlive it.
 class FacingPoints
 {
 public:
   FacingPoints(const TrainedModel& model, std::size_t max_points);
 
-  const SurfaceIndices& at(const Pose& T_camera_object) const;
+  const TestPoints& at(const Pose& T_camera_object) const;
 
 private:
   const TrainedModel& model_;
-  std::vector<SurfaceIndices> of_views_;
+  std::vector<TestPoints> of_views_;
 };
 
 /// Surface points that the camera would see at this pose if nothing but the part were there: a z-buffer of the points
@@ -92,15 +104,14 @@ SurfaceIndices visiblePoints(const TrainedModel& model, const Pose& T_camera_obj
 /// Every step-th point so that at most max_points remain.
 SurfaceIndices thinned(const SurfaceIndices& points, std::size_t max_points);
 
-/// \param facing points of the part that face the camera (visiblePoints, facingPoints)
+/// \param points of the part that face the camera (visiblePoints, facingPoints)
 /// \param tolerance of the distance to the surface, metres
 /// \param grid what belongs to parts; \param surroundings the same grid with the bin and its floor, which are no
 /// evidence for
 ///   a part but may contradict it
-PoseEvidence gatherEvidence(const TrainedModel& model, const SurfaceIndices& facing, const Pose& T_camera_object,
-                            const DepthGrid& grid, const DepthGrid& surroundings,
-                            const std::vector<Eigen::Vector3f>& normals, double tolerance,
-                            const VerificationParameters& parameters);
+PoseEvidence gatherEvidence(const TestPoints& points, const Pose& T_camera_object, const DepthGrid& grid,
+                            const DepthGrid& surroundings, const std::vector<Eigen::Vector3f>& normals,
+                            double tolerance, const VerificationParameters& parameters);
 
 /// What the scene does just outside of the part's outline, point by point along it.
 struct OutlineEvidence

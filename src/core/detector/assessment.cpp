@@ -131,7 +131,7 @@ Pose settle(const Pose& rough, const PreparedScene& scene, const TrainedModel& m
 PoseEvidence evidenceAt(const Pose& T_camera_object, const SurfaceIndices& facing, const PreparedScene& scene,
                         const TrainedModel& model, const VerificationParameters& parameters)
 {
-  return gatherEvidence(model, facing, T_camera_object, scene.grid, scene.surroundings, scene.normals,
+  return gatherEvidence(testPoints(model, facing), T_camera_object, scene.grid, scene.surroundings, scene.normals,
                         depthTolerance(scene, model, parameters), parameters);
 }
 

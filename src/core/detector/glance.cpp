@@ -22,7 +22,7 @@ std::vector<Hypothesis> keepPromising(const std::vector<Hypothesis>& hypotheses,
     {
       const Pose& T = hypotheses[i].T_camera_object;
       const PoseEvidence evidence =
-          gatherEvidence(model, facing.at(T), T, scene.grid, scene.surroundings, scene.normals, tolerance, parameters);
+          gatherEvidence(facing.at(T), T, scene.grid, scene.surroundings, scene.normals, tolerance, parameters);
       ranked[i] = {-promise(evidence, parameters), i};
     }
   });

@@ -39,7 +39,7 @@ Ranked lookAt(const Hypothetical& pose, const PreparedScene& scene, const Traine
 {
   const Pose T = nudge(pose.T_camera_object, scene, model, parameters.icp);
   // A leaf is forgiven before the pose is refined.
-  const PoseEvidence evidence = gatherEvidence(model, facing.at(T), T, scene.grid, scene.surroundings, scene.normals,
+  const PoseEvidence evidence = gatherEvidence(facing.at(T), T, scene.grid, scene.surroundings, scene.normals,
                                                model.parameters.leaf, parameters.verification);
   return {{T, pose.votes, pose.region},
           promise(evidence, parameters.verification),

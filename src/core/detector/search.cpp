@@ -35,6 +35,20 @@ PreparedScene reduceScene(const PointView& raw, const Bin* bin, const TrainedMod
   return scene;
 }
 
+namespace
+{
+void describeEdges(PreparedScene& scene, const TrainedModel& model, const VotingParameters& voting,
+                   const Executor& executor)
+{
+  const TrainingParameters& trained = model.parameters;
+  const double min_drop = MIN_EDGE_DROP * trained.leaf + EDGE_NOISE * scene.noise;
+  scene.edges = findDepthEdges(scene.grid, scene.surroundings, scene.runs, min_drop, executor);
+  if (voting.edge_weight > 0 && !model.edges.empty())
+    scene.edge_points =
+        voxelDownsample(edgePoints(scene.grid, scene.normals, scene.edges), trained.matching_leaf, MIN_EDGE_PIXELS);
+}
+}  // namespace
+
 void describeScene(PreparedScene& scene, const TrainedModel& model, const DetectorParameters& parameters,
                    const Executor& executor, StageClock& clock)
 {
@@ -42,17 +56,15 @@ void describeScene(PreparedScene& scene, const TrainedModel& model, const Detect
   scene.runs = connectedRuns(scene.grid, EdgeRule(), executor);
   scene.noise = estimateDepthNoise(scene.grid, scene.runs);
   clock.lap("noise");
-  const double min_drop = MIN_EDGE_DROP * trained.leaf + EDGE_NOISE * scene.noise;
-  scene.edges = findDepthEdges(scene.grid, scene.surroundings, scene.runs, min_drop, executor);
-  clock.lap("edges");
   scene.normals = estimateGridNormals(scene.grid, scene.runs, trained.normal_radius, executor);
   clock.lap("normals");
-  if (parameters.voting.edge_weight > 0 && !model.edges.empty())
-    scene.edge_points =
-        voxelDownsample(edgePoints(scene.grid, scene.normals, scene.edges), trained.matching_leaf, MIN_EDGE_PIXELS);
+  executor.forEach(2, [&](std::size_t side) {  // neither needs the other
+    if (side == 0)
+      scene.samples = sampleScene(scene.grid, scene.normals, trained.matching_leaf, parameters.preprocessing);
+    else
+      describeEdges(scene, model, parameters.voting, executor);
+  });
   clock.count("edge points", static_cast<double>(scene.edge_points.size()));
-  clock.lap("edges");
-  scene.samples = sampleScene(scene.grid, scene.normals, trained.matching_leaf, parameters.preprocessing);
   clock.count("samples", static_cast<double>(scene.samples.size()));
   clock.lap("sampling");
   if (model.table.quantizer().curvature_bins > 1)

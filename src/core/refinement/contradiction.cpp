@@ -39,15 +39,18 @@ std::vector<Eigen::Vector3f> measuredAround(const TrainedModel& model, const Pos
   return points;
 }
 
-constexpr std::size_t LOOKS = 4;  // that the points are divided into
+constexpr std::size_t LOOKS = 16;       // that the points are divided into
+constexpr std::size_t FIRST_LOOKS = 4;  // which tell what is out of the question
 
-/// Every fourth point, the next ones, and so on, so that the first quarter lies all over the place.
+/// Every sixteenth point, then those half-way between them, and so on: the points of the first looks lie all over the
+/// place.
 std::vector<Eigen::Vector3f> inLooks(const std::vector<Eigen::Vector3f>& points)
 {
+  constexpr std::size_t FIRST_OF_LOOK[LOOKS] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
   std::vector<Eigen::Vector3f> ordered;
   ordered.reserve(points.size());
-  for (std::size_t look = 0; look < LOOKS; ++look)
-    for (std::size_t i = look; i < points.size(); i += LOOKS)
+  for (const std::size_t first : FIRST_OF_LOOK)
+    for (std::size_t i = first; i < points.size(); i += LOOKS)
       ordered.push_back(points[i]);
   return ordered;
 }
@@ -85,28 +88,20 @@ Contradiction::Contradiction(const TrainedModel& model, const Pose& T_camera_obj
 
 std::vector<double> Contradiction::ofAll(const std::vector<Pose>& turns)
 {
-  std::vector<Turn> all(turns.size());
+  std::vector<Turn> likely(turns.size());
   for (std::size_t k = 0; k < turns.size(); ++k)
-    all[k] = {k, turns[k].inverse().cast<float>(), 0};
-  // Some of the points tell which turns are out of the question; all of them, how the others compare.
+    likely[k] = {k, turns[k].inverse().cast<float>(), 0};
   std::vector<Eigen::Vector3f> concerned;
-  const std::size_t first_look = points_.size() / LOOKS;
-  addOffSurface(0, first_look, all, concerned);
-  std::vector<double> against(turns.size());
-  double least = std::numeric_limits<double>::infinity();
-  for (const Turn& turn : all)
+  for (std::size_t look = 0; look < LOOKS && !likely.empty(); ++look)
   {
-    against[turn.index] = LOOKS * turn.off_surface;
-    least = std::min(least, against[turn.index]);
+    addOffSurface(look * points_.size() / LOOKS, (look + 1) * points_.size() / LOOKS, likely, concerned);
+    // What lags by half the margin after a quarter of the points, lags by twice the margin in the end.
+    dropHopeless(likely, look < FIRST_LOOKS ? MOST_MARGIN / 2 : MOST_MARGIN);
   }
-  const double limit = least + 2 * MOST_MARGIN;
-  std::vector<Turn> likely;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(likely),
-               [limit](const Turn& turn) { return LOOKS * turn.off_surface < limit; });
-  addOffSurface(first_look, points_.size(), likely, concerned);
   points_ = std::move(concerned);
 
-  least = std::numeric_limits<double>::infinity();
+  std::vector<double> against(turns.size(), std::numeric_limits<double>::infinity());
+  double least = std::numeric_limits<double>::infinity();
   for (const Turn& turn : likely)
   {
     const double enough = least + MOST_MARGIN - turn.off_surface;
@@ -114,10 +109,16 @@ std::vector<double> Contradiction::ofAll(const std::vector<Pose>& turns)
     least = std::min(least, against[turn.index]);
   }
   // The others were not looked through: none of them may pass for the best.
-  for (const Turn& turn : all)
-    if (LOOKS * turn.off_surface >= limit)
-      against[turn.index] = std::max(against[turn.index], least + MOST_MARGIN);
+  std::replace(against.begin(), against.end(), std::numeric_limits<double>::infinity(), least + MOST_MARGIN);
   return against;
+}
+
+void Contradiction::dropHopeless(std::vector<Turn>& turns, double lag)
+{
+  const auto less = [](const Turn& a, const Turn& b) { return a.off_surface < b.off_surface; };
+  const double limit = std::min_element(turns.begin(), turns.end(), less)->off_surface + lag;
+  turns.erase(std::remove_if(turns.begin(), turns.end(), [&](const Turn& turn) { return turn.off_surface >= limit; }),
+              turns.end());
 }
 
 double Contradiction::operator()(const Pose& turn) const

@@ -35,6 +35,8 @@ private:
   };
 
   double cost(float distance) const;
+  /// Those that lag behind the best by more than that.
+  static void dropHopeless(std::vector<Turn>& turns, double lag);
   /// Of points_ [begin, end). \param concerned receives those that lie near the surface of a turn
   void addOffSurface(std::size_t begin, std::size_t end, std::vector<Turn>& turns,
                      std::vector<Eigen::Vector3f>& concerned) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../common/simd.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
 #include "bin_picking_perception/refinement/icp.hpp"
 
@@ -77,9 +78,11 @@ float biweight(float residual, float gate)
 
 /// One row per measured point: its distance from the part's surface. In the part's frame, so that the field is read
 /// without turning its gradient back.
-void addSurface(const DistanceField& field, const OrientedPoints& measured, const Eigen::Isometry3f& T_object_camera,
-                const Eigen::Vector3f& pivot, float inverse_radius, const Gate& gate, RowSums& sums)
+BIN_PICKING_SIMD void addSurface(const DistanceField& field, const OrientedPoints& measured,
+                                 const Eigen::Isometry3f& T_object_camera, const Eigen::Vector3f& pivot,
+                                 float inverse_radius, const Gate& gate, RowSums& result)
 {
+  RowSums sums = result;
   for (std::size_t i = 0; i < measured.size(); ++i)
   {
     const Eigen::Vector3f p = T_object_camera * measured.points[i];
@@ -91,6 +94,7 @@ void addSurface(const DistanceField& field, const OrientedPoints& measured, cons
     if (normal.dot(sample.gradient) > gate.min_cosine * sample.gradient.norm())
       sums.add((p - pivot) * inverse_radius, sample.gradient, sample.distance, weight);
   }
+  result = sums;
 }
 
 /// One row per measured edge: a step outside of it the distance is the step.

@@ -16,7 +16,7 @@ struct Facing
   std::uint32_t index;
   Eigen::Vector2f place;
   float depth;
-  float cosine;  ///< between the normal and the ray to the camera
+  float towards;  ///< part of the vector to the camera along the normal
 };
 
 std::vector<Facing> pointsFacing(const TrainedModel& model, const Eigen::Isometry3f& T_camera_object)
@@ -28,7 +28,7 @@ std::vector<Facing> pointsFacing(const TrainedModel& model, const Eigen::Isometr
     const Eigen::Vector3f p = T_camera_object * model.surface.points[i];
     const float towards = -(T_camera_object.linear() * model.surface.normals[i]).dot(p);
     if (p.z() > 0 && towards > 0)
-      points.push_back({static_cast<std::uint32_t>(i), p.head<2>() / p.z(), p.z(), towards / p.norm()});
+      points.push_back({static_cast<std::uint32_t>(i), p.head<2>() / p.z(), p.z(), towards});
   }
   return points;
 }
@@ -46,35 +46,39 @@ public:
       low = low.cwiseMin(p.place);
       high = high.cwiseMax(p.place);
     }
-    low_ = low;
     constexpr float MAX_SIDE = 2048;  // a pose that almost touches the camera must not cost memory
-    inverse_cell_ = 1 / std::max(cell, (high - low).maxCoeff() / MAX_SIDE);
-    width_ = static_cast<int>((high.x() - low.x()) * inverse_cell_) + 1;
-    const int height = static_cast<int>((high.y() - low.y()) * inverse_cell_) + 1;
-    depth_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height),
+    const float inverse_cell = 1 / std::max(cell, (high - low).maxCoeff() / MAX_SIDE);
+    const int width = static_cast<int>((high.x() - low.x()) * inverse_cell) + 1;
+    const int height = static_cast<int>((high.y() - low.y()) * inverse_cell) + 1;
+    depth_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
                   std::numeric_limits<float>::max());
+    cell_of_.reserve(points.size());
     for (const Facing& p : points)
     {
-      float& depth = depth_[index(p)];
+      const Eigen::Vector2f q = (p.place - low) * inverse_cell;
+      const int cell_index = static_cast<int>(q.y()) * width + static_cast<int>(q.x());
+      cell_of_.push_back(cell_index);
+      float& depth = depth_[static_cast<std::size_t>(cell_index)];
       depth = std::min(depth, p.depth);
     }
   }
 
-  float at(const Facing& p) const { return depth_[index(p)]; }
+  /// In the cell of the i-th point.
+  float at(std::size_t i) const { return depth_[static_cast<std::size_t>(cell_of_[i])]; }
 
 private:
-  std::size_t index(const Facing& p) const
-  {
-    const Eigen::Vector2f q = (p.place - low_) * inverse_cell_;
-    const int cell = static_cast<int>(q.y()) * width_ + static_cast<int>(q.x());
-    return static_cast<std::size_t>(cell);
-  }
-
-  float inverse_cell_ = 0;
-  Eigen::Vector2f low_;
-  int width_ = 1;
+  std::vector<int> cell_of_;
   std::vector<float> depth_;
 };
+
+/// Depth that a tilted surface gains across a cell, in edges of the cell.
+float slopeOf(const Facing& point)
+{
+  // p = depth (x, y, 1)
+  const float distance = point.depth * std::sqrt(1 + point.place.squaredNorm());
+  const float cosine = std::max(0.25f, point.towards / distance);
+  return std::sqrt(1 - cosine * cosine) / cosine;
+}
 }  // namespace
 
 SurfaceIndices visiblePoints(const TrainedModel& model, const Pose& T_camera_object)
@@ -87,13 +91,12 @@ SurfaceIndices visiblePoints(const TrainedModel& model, const Pose& T_camera_obj
   const DepthCells nearest(points, size / static_cast<float>((T_camera_object * model.center).z()));
   SurfaceIndices visible;
   visible.reserve(points.size());
-  for (const Facing& point : points)
+  for (std::size_t i = 0; i < points.size(); ++i)
   {
-    // Within a cell a tilted surface spans this much depth by itself.
-    const float cosine = std::max(0.25f, point.cosine);
-    const float slope = size * std::sqrt(1 - cosine * cosine) / cosine;
-    if (point.depth <= nearest.at(point) + 0.5f * size + 1.5f * slope)
-      visible.push_back(point.index);
+    // Within a cell a tilted surface spans some depth by itself; most points lie so near that it need not be asked.
+    const float behind = points[i].depth - nearest.at(i) - 0.5f * size;
+    if (behind <= 0 || behind <= 1.5f * size * slopeOf(points[i]))
+      visible.push_back(points[i].index);
   }
   return visible;
 }
