@@ -52,25 +52,59 @@ bool isSmallTurn(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b)
   return a.cwiseProduct(b).sum() > 1 + 2 * COSINE;  // the trace of a^T b
 }
 
+/// A pose with where it takes the part's middle: most places are told apart by that.
+struct Place
+{
+  Pose T_camera_object;
+  Eigen::Vector3d center;
+};
+
 /// The same place and the same turn, modulo the part's symmetry and turns that are slight: which of these it is, the
 /// rivals tell. Of poses that other near symmetries lead to, the one that ranks first need not end at the right turn.
-bool samePlace(const Pose& a, const Pose& b, const TrainedModel& model)
+class SamePlace
 {
-  const double near_enough = SAME_DISTANCE * model.diameter;
-  const Eigen::Vector3d center = b.linear().transpose() * (a * model.center - b.translation());  // as b sees it
-  if ((center - model.center).squaredNorm() > model.diameter * model.diameter)
-    return false;
-  const auto same = [&](const Pose& turn) {
-    if ((center - turn * model.center).squaredNorm() > near_enough * near_enough)
+public:
+  explicit SamePlace(const TrainedModel& model) : model_(model), near_enough_(SAME_DISTANCE * model.diameter)
+  {
+    add(Pose::Identity());
+    for (const NearSymmetry& near : model.near_symmetries)
+      if (near.slight)
+        add(near.T_object_object);
+  }
+
+  Place of(const Pose& T_camera_object) const { return {T_camera_object, T_camera_object * model_.center}; }
+
+  bool operator()(const Place& a, const Place& b) const
+  {
+    const double squared = (a.center - b.center).squaredNorm();
+    if (squared > reach_ * reach_)
       return false;
-    const Pose other = b * turn;
-    const Pose nearest = model.symmetry.trivial() ? other : nearestEquivalent(other, a, model.symmetry);
+    const Pose& T_b = b.T_camera_object;
+    const Eigen::Vector3d center = T_b.linear().transpose() * (a.center - T_b.translation());  // of a, as b sees it
+    return std::any_of(turns_.begin(), turns_.end(), [&](const Place& turn) {
+      return (center - turn.center).squaredNorm() <= near_enough_ * near_enough_ &&
+             isSameTurn(a.T_camera_object, T_b * turn.T_camera_object);
+    });
+  }
+
+private:
+  void add(const Pose& turn)
+  {
+    turns_.push_back(of(turn));
+    reach_ = std::max(reach_, near_enough_ + (turns_.back().center - model_.center).norm());
+  }
+
+  bool isSameTurn(const Pose& a, const Pose& b) const
+  {
+    const Pose nearest = model_.symmetry.trivial() ? b : nearestEquivalent(b, a, model_.symmetry);
     return isSmallTurn(a.linear(), nearest.linear());
-  };
-  return same(Pose::Identity()) ||
-         std::any_of(model.near_symmetries.begin(), model.near_symmetries.end(),
-                     [&](const NearSymmetry& near) { return near.slight && same(near.T_object_object); });
-}
+  }
+
+  const TrainedModel& model_;
+  double near_enough_;
+  double reach_ = 0;          ///< of the centres of what may be the same place
+  std::vector<Place> turns_;  ///< none and the slight ones, in the part's frame
+};
 
 /// All poses, most promising first, each place once.
 std::vector<Ranked> rankPoses(const std::vector<Hypothetical>& poses, const PreparedScene& scene,
@@ -91,34 +125,32 @@ std::vector<Ranked> rankPoses(const std::vector<Hypothetical>& poses, const Prep
     ranked[i] = lookAt(poses[i], scene, model, facing, parameters, comparison_cell);
   });
   std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
+  const SamePlace same_place(model);
+  std::vector<Place> places;
   std::vector<Ranked> distinct;
   for (Ranked& candidate : ranked)
-    if (std::none_of(distinct.begin(), distinct.end(), [&](const Ranked& better) {
-          return samePlace(better.pose.T_camera_object, candidate.pose.T_camera_object, model);
-        }))
-      distinct.push_back(std::move(candidate));
+  {
+    const Place place = same_place.of(candidate.pose.T_camera_object);
+    if (std::any_of(places.begin(), places.end(), [&](const Place& better) { return same_place(better, place); }))
+      continue;
+    places.push_back(place);
+    distinct.push_back(std::move(candidate));
+  }
   return distinct;
 }
 
-double sharedPart(const std::vector<int>& cells, const std::vector<int>& explained)
-{
-  std::size_t shared = 0;
-  for (const int cell : cells)
-    shared += std::binary_search(explained.begin(), explained.end(), cell) ? 1 : 0;
-  return cells.empty() ? 0 : static_cast<double>(shared) / static_cast<double>(cells.size());
-}
 /// Whether refinement has led there already, wherever it started: it would lead there again.
-bool isAssessed(const Pose& T_camera_object, const std::vector<Assessed>& assessed, const TrainedModel& model)
+bool isAssessed(const Place& place, const std::vector<Assessed>& assessed, const SamePlace& same_place)
 {
   return std::any_of(assessed.begin(), assessed.end(), [&](const Assessed& other) {
-    return samePlace(other.detection.T_camera_object, T_camera_object, model);
+    return same_place(same_place.of(other.detection.T_camera_object), place);
   });
 }
 
 /// The next poses that lie where nothing was accepted yet. \param assessed that nobody needs to be led to again
 /// \param next into `ranked`, moved on
 std::vector<const Ranked*> nextRound(const std::vector<Ranked>& ranked, const std::vector<int>& explained,
-                                     const std::vector<Assessed>& assessed, const TrainedModel& model,
+                                     const std::vector<Assessed>& assessed, const SamePlace& same_place,
                                      std::size_t& next)
 {
   constexpr std::size_t ROUND = 8;
@@ -126,7 +158,7 @@ std::vector<const Ranked*> nextRound(const std::vector<Ranked>& ranked, const st
   std::vector<const Ranked*> round;
   for (; next < ranked.size() && round.size() < ROUND; ++next)
     if (sharedPart(ranked[next].cells, explained) < EXPLAINED &&
-        !isAssessed(ranked[next].pose.T_camera_object, assessed, model))
+        !isAssessed(same_place.of(ranked[next].pose.T_camera_object), assessed, same_place))
       round.push_back(&ranked[next]);
   return round;
 }
@@ -151,6 +183,7 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
   // of threads, so neither do the results.
   const std::vector<Ranked> ranked = rankPoses(poses, scene, model, parameters, comparison_cell, executor);
   clock.lap("ranking");
+  const SamePlace same_place(model);
   std::vector<Assessed> ready;
   const std::vector<Assessed> none;
   const std::vector<Assessed>& known = verification.enabled ? ready : none;  // the paper refines every candidate
@@ -160,7 +193,7 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
   const std::size_t limit = verification.enabled ? static_cast<std::size_t>(verification.max_refined) : ranked.size();
   while (next < ranked.size() && ready.size() < limit && fruitless < verification.fruitless_rounds)
   {
-    const std::vector<const Ranked*> round = nextRound(ranked, explained, known, model, next);
+    const std::vector<const Ranked*> round = nextRound(ranked, explained, known, same_place, next);
     if (deadline.passed())
     {
       partial = partial || !round.empty();

@@ -30,6 +30,14 @@ void summarize(DetectionResult& result)
                      roundedText(result.detections.front().score, 2) + unknown + late;
 }
 
+double sharedPart(const std::vector<int>& cells, const std::vector<int>& explained)
+{
+  std::size_t shared = 0;
+  for (const int cell : cells)
+    shared += std::binary_search(explained.begin(), explained.end(), cell) ? 1 : 0;
+  return cells.empty() ? 0 : static_cast<double>(shared) / static_cast<double>(cells.size());
+}
+
 void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& parameters, DetectionResult& result)
 {
   std::stable_sort(assessed.begin(), assessed.end(),
@@ -38,11 +46,7 @@ void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& 
   for (auto& candidate : assessed)
   {
     Detection& detection = candidate.detection;
-    std::vector<int> shared;
-    std::set_intersection(candidate.cells.begin(), candidate.cells.end(), explained.begin(), explained.end(),
-                          std::back_inserter(shared));
-    const double overlap =
-        static_cast<double>(shared.size()) / std::max<double>(1, static_cast<double>(candidate.cells.size()));
+    const double overlap = detection.rejection.empty() ? sharedPart(candidate.cells, explained) : 0;
     if (detection.rejection.empty() && overlap > parameters.verification.overlap)
       detection.rejection = "a better detection explains " + roundedText(100 * overlap, 0) + " % of what it explains";
     if (detection.rejection.empty() && static_cast<int>(result.detections.size()) >= parameters.max_detections)

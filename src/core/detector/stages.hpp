@@ -120,6 +120,9 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
                                       int comparison_cell, const Deadline& deadline, const Executor& executor,
                                       StageClock& clock, bool& partial);
 
+/// Share of a pose's cells that others explain. \param cells, explained ascending
+double sharedPart(const std::vector<int>& cells, const std::vector<int>& explained);
+
 /// "score is 0.41, but must be at least 0.42".
 std::string failureText(const Criterion& criterion);
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace bin_picking
@@ -28,16 +29,10 @@ namespace
 struct Cluster
 {
   Pose leader;
-  Eigen::Vector3d center;  ///< of the part at the leader's pose
   std::vector<Pose> poses;
   std::vector<double> weights;
   double votes = 0;
 };
-
-double rotationAngle(const Pose& a, const Pose& b)
-{
-  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
-}
 
 /// Strongest first, in an order that no two hypotheses share.
 void sortByStrength(std::vector<Hypothesis>& hypotheses)
@@ -48,16 +43,34 @@ void sortByStrength(std::vector<Hypothesis>& hypotheses)
   });
 }
 
-Cluster* findCluster(std::vector<Cluster>& clusters, const Pose& pose, const Eigen::Vector3d& center, double distance,
-                     double angle, const Symmetry& symmetry, Pose& equivalent)
+/// Clusters in the order in which they were opened.
+struct Clusters
 {
-  for (auto& cluster : clusters)
+  std::vector<Cluster> all;
+  std::vector<Eigen::Vector3d> centers;  ///< of the part at the leaders' poses: side by side, because all are looked at
+
+  Cluster& open(const Pose& leader, const Eigen::Vector3d& center)
   {
-    if ((cluster.center - center).squaredNorm() > distance * distance)
+    all.push_back({leader, {}, {}, 0});
+    centers.push_back(center);
+    return all.back();
+  }
+};
+
+/// The first that the pose belongs to; nullptr if none. \param equivalent the pose as that cluster sees it
+Cluster* findCluster(Clusters& clusters, const Pose& pose, const Eigen::Vector3d& center,
+                     const ClusteringParameters& parameters, const TrainedModel& model, Pose& equivalent)
+{
+  const double squared_distance = std::pow(parameters.distance * model.diameter, 2);
+  const double min_trace = 1 + 2 * std::cos(parameters.angle);  // of the turn from one to the other
+  for (std::size_t k = 0; k < clusters.all.size(); ++k)
+  {
+    if ((clusters.centers[k] - center).squaredNorm() > squared_distance)
       continue;
-    equivalent = symmetry.trivial() ? pose : nearestEquivalent(pose, cluster.leader, symmetry);
-    if (rotationAngle(cluster.leader, equivalent) < angle)
-      return &cluster;
+    const Pose& leader = clusters.all[k].leader;
+    equivalent = model.symmetry.trivial() ? pose : nearestEquivalent(pose, leader, model.symmetry);
+    if (leader.linear().cwiseProduct(equivalent.linear()).sum() > min_trace)
+      return &clusters.all[k];
   }
   return nullptr;
 }
@@ -87,24 +100,23 @@ std::vector<PoseCluster> clusterPoses(std::vector<Hypothesis> hypotheses, const 
                                       const ClusteringParameters& parameters)
 {
   sortByStrength(hypotheses);
-  const double distance = parameters.distance * model.diameter;
-  std::vector<Cluster> clusters;
+  Clusters opened;
   for (const auto& hypothesis : hypotheses)
   {
     const Pose& pose = hypothesis.T_camera_object;
     const Eigen::Vector3d center = pose * model.center;
     Pose equivalent = pose;
-    Cluster* cluster = findCluster(clusters, pose, center, distance, parameters.angle, model.symmetry, equivalent);
+    Cluster* cluster = findCluster(opened, pose, center, parameters, model, equivalent);
     if (cluster == nullptr)
     {
-      clusters.push_back({pose, center, {}, {}, 0});
-      cluster = &clusters.back();
+      cluster = &opened.open(pose, center);
       equivalent = pose;
     }
     cluster->poses.push_back(equivalent);
     cluster->weights.push_back(hypothesis.votes);
     cluster->votes += hypothesis.votes;
   }
+  std::vector<Cluster> clusters = std::move(opened.all);
   std::stable_sort(clusters.begin(), clusters.end(),
                    [](const Cluster& a, const Cluster& b) { return a.votes > b.votes; });
 

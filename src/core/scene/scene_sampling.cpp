@@ -95,9 +95,14 @@ private:
     return static_cast<int>(surfaces_.size()) - 1;
   }
 
-  /// The first surface that faces the same way; else a new one; the best of the voxel's when it is full.
+  /// The first surface that faces the same way; else a new one; the best of the voxel's when it is full. Most pixels
+  /// face as the first surface does, which is told without a root.
   int choose(int first, const Eigen::Vector3f& normal)
   {
+    const Eigen::Vector3f& sum = surfaces_[static_cast<std::size_t>(first)].normal;
+    const float along = sum.dot(normal);
+    if (along > 0 && along * along >= split_cosine_ * split_cosine_ * sum.squaredNorm())
+      return first;
     int best = first;
     int last = first;
     float best_cosine = -2;
