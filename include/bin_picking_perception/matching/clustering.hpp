@@ -13,8 +13,9 @@ struct ClusteringParameters
 {
   double distance = 0.1;  // of the diameter
   double angle = 0.35;    // rad
-  int poses_per_reference = 2;
-  int max_clusters = 400;
+  int poses_per_reference = 3;
+  int max_clusters = 600;
+  double promising_share = 0.5;
 
   void visit(ParameterVisitor& v);
 };

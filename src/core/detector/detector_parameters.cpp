@@ -46,6 +46,7 @@ DetectorParameters paperPreset()
   p.voting.peaks_per_reference = 1;
   p.voting.sum_adjacent_angles = false;
   p.clustering.max_clusters = 1000;
+  p.clustering.promising_share = 1;
   p.icp.method = IcpMethod::PointToPoint;
   p.icp.max_iterations = 50;
   p.icp.max_distance = 3;
@@ -66,6 +67,7 @@ DetectorParameters accuratePreset()
   p.voting.min_peak_share = 0.3;
   p.clustering.poses_per_reference = 4;
   p.clustering.max_clusters = 1000;
+  p.clustering.promising_share = 1;
   p.verification.max_refined = 120;
   p.icp.max_iterations = 16;
   p.verification.fruitless_rounds = 8;

@@ -1,30 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 
 #include "bin_picking_perception/common/parallel.hpp"
 #include "stages.hpp"
 
 namespace bin_picking
 {
-std::vector<Hypothesis> keepPromising(const std::vector<Hypothesis>& hypotheses, std::size_t per_reference,
-                                      const PreparedScene& scene, const TrainedModel& model,
-                                      const VerificationParameters& parameters, const Executor& executor)
+namespace
 {
-  constexpr std::size_t GLANCE_POINTS = 20;
-  constexpr std::size_t BLOCK = 64;
+constexpr std::size_t GLANCE_POINTS = 20;
+constexpr std::size_t BUNDLE = 64;
+}  // namespace
+
+Glance::Glance(const PreparedScene& scene, const TrainedModel& model, const VerificationParameters& parameters)
+    : scene_(scene), model_(model), parameters_(parameters), facing_(model, GLANCE_POINTS)
+{}
+
+double Glance::at(const Pose& T_camera_object) const
+{
   // The pose of one reference point is off by about the distance of the points that voted.
-  const double tolerance = model.parameters.matching_leaf;
-  const FacingPoints facing(model, GLANCE_POINTS);
+  const double tolerance = model_.parameters.matching_leaf;
+  return promise(gatherEvidence(facing_.at(T_camera_object), T_camera_object, scene_.grid, scene_.surroundings,
+                                scene_.normals, tolerance, parameters_),
+                 parameters_);
+}
+
+std::vector<Hypothesis> keepPromising(const std::vector<Hypothesis>& hypotheses, std::size_t per_reference,
+                                      const Glance& glance, const Executor& executor)
+{
   std::vector<std::pair<double, std::size_t>> ranked(hypotheses.size());
-  executor.forEach((hypotheses.size() + BLOCK - 1) / BLOCK, [&](std::size_t block) {
-    for (std::size_t i = block * BLOCK; i < std::min(hypotheses.size(), (block + 1) * BLOCK); ++i)
-    {
-      const Pose& T = hypotheses[i].T_camera_object;
-      const PoseEvidence evidence =
-          gatherEvidence(facing.at(T), T, scene.grid, scene.surroundings, scene.normals, tolerance, parameters);
-      ranked[i] = {-promise(evidence, parameters), i};
-    }
+  executor.forEachBundle(hypotheses.size(), BUNDLE, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      ranked[i] = {-glance.at(hypotheses[i].T_camera_object), i};
   });
   // A reference point lies on one part: few of its poses are worth more, however good those of others look.
   std::vector<Hypothesis> kept;
@@ -37,6 +47,25 @@ std::vector<Hypothesis> keepPromising(const std::vector<Hypothesis>& hypotheses,
     for (std::size_t k = begin; k < std::min(end, begin + per_reference); ++k)
       kept.push_back(hypotheses[ranked[k].second]);
   }
+  return kept;
+}
+
+std::vector<Hypothetical> keepPromising(const std::vector<Hypothetical>& poses, double share, const Glance& glance,
+                                        const Executor& executor)
+{
+  std::vector<std::pair<double, std::size_t>> ranked(poses.size());
+  executor.forEachBundle(poses.size(), BUNDLE, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      ranked[i] = {-glance.at(poses[i].T_camera_object), i};
+  });
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<std::size_t> chosen(static_cast<std::size_t>(std::ceil(share * static_cast<double>(poses.size()))));
+  std::transform(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(chosen.size()), chosen.begin(),
+                 [](const auto& pose) { return pose.second; });
+  std::sort(chosen.begin(), chosen.end());
+  std::vector<Hypothetical> kept;
+  kept.reserve(chosen.size());
+  std::transform(chosen.begin(), chosen.end(), std::back_inserter(kept), [&](std::size_t i) { return poses[i]; });
   return kept;
 }
 }  // namespace bin_picking

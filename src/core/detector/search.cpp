@@ -163,6 +163,9 @@ std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, 
   std::vector<Hypothetical> poses;
   const OrientedPoints no_edges;
   const OrientedPoints& edges = scene != nullptr ? scene->edge_points : no_edges;
+  std::optional<Glance> glance;
+  if (scene != nullptr && parameters.verification.enabled)
+    glance.emplace(*scene, model, parameters.verification);
   for (const auto& region : regions)
   {
     VotingResult votes = voteForPoses(model, region.samples, region.samples.curvature_complete, edges,
@@ -173,10 +176,9 @@ std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, 
     clock.count("votes", static_cast<double>(votes.statistics.votes));
     clock.count("hypotheses", static_cast<double>(votes.hypotheses.size()));
     clock.lap("voting");
-    if (scene != nullptr && parameters.verification.enabled)
-      votes.hypotheses =
-          keepPromising(votes.hypotheses, static_cast<std::size_t>(parameters.clustering.poses_per_reference), *scene,
-                        model, parameters.verification, executor);
+    if (glance)
+      votes.hypotheses = keepPromising(
+          votes.hypotheses, static_cast<std::size_t>(parameters.clustering.poses_per_reference), *glance, executor);
     clock.lap("glance");
     const auto clusters = clusterPoses(std::move(votes.hypotheses), model, parameters.clustering);
     clock.count("clusters", static_cast<double>(clusters.size()));
@@ -184,6 +186,9 @@ std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, 
       poses.push_back({clusters[i].T_camera_object, clusters[i].votes, &region});
     clock.lap("clustering");
   }
+  if (glance)
+    poses = keepPromising(poses, parameters.clustering.promising_share, *glance, executor);
+  clock.lap("glance");
   return poses;
 }
 }  // namespace bin_picking

@@ -81,11 +81,29 @@ std::vector<SearchRegion> planSearch(const PreparedScene& scene, const Segmentat
                                      const std::vector<CandidateTarget>& candidates, const TrainedModel& model,
                                      const DetectorParameters& parameters);
 
-/// Of each reference point the hypotheses that a glance at a few of their points contradicts least.
-/// \param hypotheses ordered by reference
+/// What a few points of a pose from votes say about it. Scene, model and parameters must outlive it.
+class Glance
+{
+public:
+  Glance(const PreparedScene& scene, const TrainedModel& model, const VerificationParameters& parameters);
+
+  /// promise() of the pose.
+  double at(const Pose& T_camera_object) const;
+
+private:
+  const PreparedScene& scene_;
+  const TrainedModel& model_;
+  const VerificationParameters& parameters_;
+  FacingPoints facing_;
+};
+
+/// Of each reference point the hypotheses that a glance contradicts least. \param hypotheses ordered by reference
 std::vector<Hypothesis> keepPromising(const std::vector<Hypothesis>& hypotheses, std::size_t per_reference,
-                                      const PreparedScene& scene, const TrainedModel& model,
-                                      const VerificationParameters& parameters, const Executor& executor);
+                                      const Glance& glance, const Executor& executor);
+
+/// Those that a glance contradicts least, in their order. \param share of the poses
+std::vector<Hypothetical> keepPromising(const std::vector<Hypothetical>& poses, double share, const Glance& glance,
+                                        const Executor& executor);
 
 /// Voting and clustering in every region. \param scene nullptr: there is no grid to hold hypotheses against
 /// \param partial set if the deadline passed

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../common/rounding.hpp"
 #include "bin_picking_perception/refinement/verification.hpp"
 
 namespace bin_picking
@@ -28,6 +29,8 @@ struct Raster
 
 Raster rasterize(const std::vector<Eigen::Vector3f>& points, const PinholeCamera& camera, int cell)
 {
+  const Eigen::Vector2f focal = Eigen::Vector2d(camera.fx / cell, camera.fy / cell).cast<float>();
+  const Eigen::Vector2f middle = Eigen::Vector2d(camera.cx / cell, camera.cy / cell).cast<float>();
   Raster raster;
   raster.cell = cell;
   std::vector<Eigen::Vector2i> cells;
@@ -36,8 +39,8 @@ Raster rasterize(const std::vector<Eigen::Vector3f>& points, const PinholeCamera
   Eigen::Vector2i high = -low;
   for (const auto& p : points)
   {
-    const Eigen::Vector2d pixel = camera.project(p.cast<double>());
-    cells.emplace_back(static_cast<int>(std::floor(pixel.x() / cell)), static_cast<int>(std::floor(pixel.y() / cell)));
+    const Eigen::Vector2f place = focal.cwiseProduct(p.head<2>() / p.z()) + middle;
+    cells.emplace_back(roundedDown(place.x()), roundedDown(place.y()));
     low = low.cwiseMin(cells.back());
     high = high.cwiseMax(cells.back());
   }

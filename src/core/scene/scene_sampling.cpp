@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "../common/rounding.hpp"
 #include "bin_picking_perception/scene/preprocessing.hpp"
 
 namespace bin_picking
@@ -54,13 +55,6 @@ private:
   };
   std::vector<Slot> slots_;
 };
-
-/// Without std::floor, which is a call where the processor's own instruction may not be taken for granted.
-int roundedDown(float value)
-{
-  const int towards_zero = static_cast<int>(value);
-  return towards_zero - (value < static_cast<float>(towards_zero) ? 1 : 0);
-}
 
 class Sampler
 {
