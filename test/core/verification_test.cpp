@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "bin_picking_perception/scene/preprocessing.hpp"
+#include "mesh_shapes.hpp"
 #include "tee_scene.hpp"
 
 namespace bin_picking
@@ -161,6 +162,76 @@ TEST(Outline, withoutDataItDecidesNothing)
   EXPECT_EQ(evidence.ends + evidence.continues, 0);
   EXPECT_NEAR(evidence.share(), 2.0 / 3, 1e-9);
 }
+
+// A block with a step: two terraces, each 30 mm by 60 mm, the lower one 30 mm below the upper one.
+constexpr float TERRACE = 0.03f;
+
+TrainedModel stepModel()
+{
+  TrainedModel step;
+  step.mesh = test::angleMesh(2 * TERRACE, TERRACE, 2 * TERRACE);
+  step.parameters.leaf = 0.004;
+  step.parameters.normal_radius = 1.3 * step.parameters.leaf;
+  step.center = Eigen::Vector3d::Constant(TERRACE);
+  step.diameter = 2 * std::sqrt(3) * static_cast<double>(TERRACE);
+  const double cell = step.parameters.leaf / 3;
+  step.field = DistanceField(sampleSurface(step.mesh, cell / 2, 1), cell, 1.5 * step.parameters.leaf);
+  return step;
+}
+
+/// The terraces face the camera, the upper one at 0.54 m.
+Pose stepPose()
+{
+  Pose T = Pose::Identity();
+  T.linear() = Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  T.translation() = Eigen::Vector3d(-0.03, -0.03, 0.6);
+  return T;
+}
+
+/// Of a box above the step, its middle given in the step's frame.
+TriangleMesh boxAt(float x, float y, float z, const Eigen::Vector3d& center, double tilt)
+{
+  Pose T = Pose::Identity();
+  T.linear() = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  T.translation() = center;
+  return test::moved(test::box(x, y, z), stepPose() * T);
+}
+
+double stepContinuedIn(const std::vector<TriangleMesh>& scene)
+{
+  const TrainedModel step = stepModel();
+  DepthRenderer renderer(480, 384, test::smallCamera());
+  for (const TriangleMesh& mesh : scene)
+    renderer.draw(mesh, Pose::Identity(), 1);
+  const DepthGrid grid = renderer.grid();
+  const auto normals = estimateGridNormals(grid, step.parameters.normal_radius, Executor(1));
+  return continuedShare(step, stepPose(), grid, normals, 0.001);
+}
+
+TriangleMesh step() { return test::moved(stepModel().mesh, stepPose()); }
+
+TEST(Continuation, ofThePartItselfThereIsNone) { EXPECT_LT(stepContinuedIn({step()}), 0.003); }
+
+TEST(Continuation, aLargerBlockGoesOnWhereTheUpperTerraceEnds)
+{
+  // All of the upper terrace is explained. Of what goes on beyond it a strip counts that is not wider than a leaf: 4 mm
+  // beside 30 mm. It is less, because a field of cells rounds the edge off.
+  const TriangleMesh block = boxAt(0.06f, 0.06f, 0.06f, {0.03, 0.03, 0.03}, 0);
+  const double share = stepContinuedIn({block});
+  EXPECT_LT(share, 0.004 / 0.03);
+  EXPECT_GT(share, 0.4 * 0.004 / 0.03);
+}
+
+TEST(Continuation, anotherBodyOnTheLowerTerraceHasASurfaceOfItsOwn)
+{
+  const Eigen::Vector3d middle(0.045, 0.045, 0.03);  // of the space above the lower terrace
+  const TriangleMesh lower = boxAt(0.03f, 0.015f, 0.06f, middle, 0);
+  EXPECT_LT(stepContinuedIn({step(), lower}), 0.003);
+  const TriangleMesh tilted = boxAt(0.03f, 0.02f, 0.06f, middle + Eigen::Vector3d(0, 0.005, 0), M_PI / 5);
+  EXPECT_LT(stepContinuedIn({step(), tilted}), 0.003);
+}
+
+TEST(Continuation, withoutDataThereIsNone) { EXPECT_EQ(stepContinuedIn({}), 0); }
 
 TEST(CoveredCells, doNotDependOnTheReduction)
 {

@@ -106,6 +106,17 @@ void judge(Detection& detection, const PoseQuality& quality, const VerificationP
   require(detection, {"score", detection.score, parameters.min_score, false});
 }
 
+/// The dearest of the tests, so only poses that nothing else speaks against come to it.
+void requireNoContinuation(Detection& detection, const PreparedScene& scene, const TrainedModel& model,
+                           const VerificationParameters& parameters)
+{
+  if (!parameters.enabled || !detection.rejection.empty())
+    return;
+  const double share = continuedShare(model, detection.T_camera_object, scene.grid, scene.normals,
+                                      depthTolerance(scene, model, parameters));
+  require(detection, {"continued_share", share, parameters.max_continued_share, true});
+}
+
 /// Of the poses that look much the same, the one that the scene contradicts least, polished.
 /// \param undetermined_turn what it leaves open. \param turn_margin against all others
 Pose settle(const Pose& rough, const PreparedScene& scene, const TrainedModel& model,
@@ -192,6 +203,7 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
           : evidence.matchingRate();
   detection.score = verification.enabled ? confidence(quality) : detection.matching_rate;
   judge(detection, quality, verification);
+  requireNoContinuation(detection, scene, model, verification);
   assessed.cells = coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell);
   return assessed;
 }

@@ -54,6 +54,12 @@ void VerificationParameters::visit(ParameterVisitor& v)
            "another shape leave points beside it",
            0, 1},
           min_surface_share);
+  v.field(
+      {"max_continued_share", "",
+       "largest share of points that carry on the explained surface in front of the part, where the part itself ends "
+       "or bends away; another part does that, rarely one that touches it flush",
+       0, 1},
+      max_continued_share);
   v.field({"max_bin_penetration", "m",
            "how deep a pose may reach through the floor or a wall of the given bin; as much as the "
            "bin's pose may be wrong",
