@@ -10,7 +10,7 @@ namespace bin_picking
 {
 namespace
 {
-constexpr std::size_t MAX_PIXELS = 20000;
+constexpr std::size_t MAX_PIXELS = 8000;
 constexpr double REACH = 0.65;      // of the diameter, round the part's middle
 constexpr double STEP_BEYOND = 1;   // leaves in the picture: farther off, another part may lie alike by chance
 constexpr float FARTHEST = 1.5f;    // leaves in space: beyond, it is not beside it
@@ -48,6 +48,7 @@ public:
   {
     const Eigen::Vector3d center = T_camera_object * model.center;
     const PixelWindow window(grid, center, REACH * model.diameter, MAX_PIXELS);
+    pixels_.reserve(MAX_PIXELS);
     for (int v = window.v_begin; v < window.v_end; v += window.step, ++height_)
       for (int u = window.u_begin; u < window.u_end; u += window.step)
         pixels_.push_back(place(grid, normals, grid.index(u, v)));
@@ -81,8 +82,10 @@ private:
     if (!grid.valid(pixel) || std::isnan(normal.x()))
       return measured;
     measured.point = T_object_camera_ * grid.point(pixel);
-    measured.normal = T_object_camera_.linear() * normal;
     const DistanceField::Sample sample = model_.field.sample(measured.point);
+    if (sample.distance >= model_.field.band())
+      return measured;
+    measured.normal = T_object_camera_.linear() * normal;
     if (std::abs(sample.distance) < tolerance_)
     {
       measured.surface_normal = sample.gradient.normalized();
@@ -90,7 +93,7 @@ private:
       if (measured.normal.dot(measured.surface_normal) > SAME_SIDE)
         measured.place = Measured::Place::OnSurface;
     }
-    else if (sample.distance > 0 && sample.distance < model_.field.band())
+    else if (sample.distance > 0)
       measured.place = Measured::Place::Outside;
     return measured;
   }
