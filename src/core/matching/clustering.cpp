@@ -129,8 +129,12 @@ std::vector<PoseCluster> clusterPoses(std::vector<Hypothesis> hypotheses, const 
   std::vector<PoseCluster> result;
   result.reserve(kept);
   for (std::size_t i = 0; i < kept; ++i)
-    result.push_back({averagePoses(clusters[i].poses, clusters[i].weights, model.center), clusters[i].votes,
-                      static_cast<int>(clusters[i].poses.size())});
+  {
+    const Cluster& cluster = clusters[i];
+    const bool alone = cluster.poses.size() == 1;  // as most are
+    const Pose mean = alone ? cluster.leader : averagePoses(cluster.poses, cluster.weights, model.center);
+    result.push_back({mean, cluster.votes, static_cast<int>(cluster.poses.size())});
+  }
   return result;
 }
 }  // namespace bin_picking
