@@ -205,7 +205,7 @@ double stepContinuedIn(const std::vector<TriangleMesh>& scene)
     renderer.draw(mesh, Pose::Identity(), 1);
   const DepthGrid grid = renderer.grid();
   const auto normals = estimateGridNormals(grid, step.parameters.normal_radius, Executor(1));
-  return continuedShare(step, stepPose(), grid, normals, 0.001);
+  return continuedShare(step, visiblePoints(step, stepPose()), stepPose(), grid, normals, 0.001);
 }
 
 TriangleMesh step() { return test::moved(stepModel().mesh, stepPose()); }

@@ -31,7 +31,7 @@ struct VerificationParameters
   double min_turn_margin = 10;
   bool accept_undetermined_turns = true;
   double min_surface_share = 0.8;
-  double max_continued_share = 0.015;
+  double max_continued_share = 0.01;
   double max_bin_penetration = 0.006;
   double overlap = 0.35;
   int max_refined = 96;
@@ -137,10 +137,11 @@ OutlineEvidence gatherOutlineEvidence(const TrainedModel& model, const SurfaceIn
 /// explains. Another body that hides the part has a surface of its own: where the explained surface itself goes
 /// straight on, past the rim of a bore or where the part bends away, it is that of another part. Beside the part, where
 /// nothing of it lies behind, the outline tells.
+/// \param visible points that the camera would see (visiblePoints), each weighted by its share of the picture
 /// \param grid what belongs to parts; \param normals of that grid
 /// \param tolerance of the distance to the surface, metres
-double continuedShare(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
-                      const std::vector<Eigen::Vector3f>& normals, double tolerance);
+double continuedShare(const TrainedModel& model, const SurfaceIndices& visible, const Pose& T_camera_object,
+                      const DepthGrid& grid, const std::vector<Eigen::Vector3f>& normals, double tolerance);
 
 /// Image cells that a pose covers with explained pixels, ascending; two poses on one part share most of them.
 /// \param scale raw pixels per pixel of this grid, so that poses found on different reductions can be compared

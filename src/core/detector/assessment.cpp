@@ -106,13 +106,16 @@ void judge(Detection& detection, const PoseQuality& quality, const VerificationP
   require(detection, {"score", detection.score, parameters.min_score, false});
 }
 
-/// The dearest of the tests, so only poses that nothing else speaks against come to it.
-void requireNoContinuation(Detection& detection, const PreparedScene& scene, const TrainedModel& model,
+/// The dearest of the tests: only poses come to it that nothing else speaks against and of which enough is hidden. What
+/// continues the surface in front of the part hides it.
+void requireNoContinuation(Detection& detection, const PoseEvidence& evidence, const SurfaceIndices& tested,
+                           const PreparedScene& scene, const TrainedModel& model,
                            const VerificationParameters& parameters)
 {
-  if (!parameters.enabled || !detection.rejection.empty())
+  const bool can_fail = evidence.occluded > parameters.max_continued_share * evidence.explained;
+  if (!parameters.enabled || !detection.rejection.empty() || !can_fail)
     return;
-  const double share = continuedShare(model, detection.T_camera_object, scene.grid, scene.normals,
+  const double share = continuedShare(model, tested, detection.T_camera_object, scene.grid, scene.normals,
                                       depthTolerance(scene, model, parameters));
   require(detection, {"continued_share", share, parameters.max_continued_share, true});
 }
@@ -183,7 +186,8 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
   const Pose T = settle(rough, scene, model, parameters, detection.undetermined_turn, quality.turn_margin);
   detection.T_camera_object = T;
   const SurfaceIndices visible = visiblePoints(model, T);
-  const PoseEvidence evidence = evidenceAt(T, thinned(visible, TEST_POINTS), scene, model, verification);
+  const SurfaceIndices tested = thinned(visible, TEST_POINTS);
+  const PoseEvidence evidence = evidenceAt(T, tested, scene, model, verification);
   quality.visible_fraction = evidence.visibleFraction();
   quality.inlier_share = evidence.inlierShare(verification.unmeasured_weight);
   quality.violation_share = evidence.violationShare();
@@ -203,7 +207,7 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
           : evidence.matchingRate();
   detection.score = verification.enabled ? confidence(quality) : detection.matching_rate;
   judge(detection, quality, verification);
-  requireNoContinuation(detection, scene, model, verification);
+  requireNoContinuation(detection, evidence, tested, scene, model, verification);
   assessed.cells = coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell);
   return assessed;
 }

@@ -13,7 +13,7 @@ namespace
 constexpr int HALF_WINDOW = 2;
 constexpr int WINDOW_PIXELS = (2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1);
 constexpr double DEGREES_OF_FREEDOM = WINDOW_PIXELS - 6;
-constexpr int MAX_WINDOWS = 5000;  // of so many the median is within 1 % of that of all
+constexpr int MAX_WINDOWS = 20000;
 
 bool isFlatWindow(const DepthGrid& grid, const ConnectedRuns& runs, int u, int v)
 {
