@@ -80,6 +80,26 @@ TEST(Detector, findsEveryFreePartAndNothingElse)
   }
 }
 
+double countOf(const DetectionResult& result, const std::string& stage)
+{
+  const auto entry = std::find_if(result.counts.begin(), result.counts.end(),
+                                  [&](const StageCount& count) { return count.stage == stage; });
+  return entry == result.counts.end() ? 0 : entry->count;
+}
+
+TEST(Detector, aGlanceAtTheClustersDropsMostOfThemButNotTheParts)
+{
+  DetectorParameters parameters;
+  parameters.clustering.promising_share = 0.25;
+  parameters.verification.fruitless_rounds = 100;  // nothing else ends the refinement
+  const auto truth = test::posesApart(4, 1);
+  const DetectionResult result = detector(parameters).detect(test::renderTees(truth, SIGMA), {});
+  for (const auto& T : truth)
+    EXPECT_GE(indexOf(result.detections, T), 0) << nearestError(result.detections, T);
+  EXPECT_GT(countOf(result, "clusters"), 40);  // else there is nothing to drop
+  EXPECT_LE(countOf(result, "refined"), std::ceil(0.25 * countOf(result, "clusters")));
+}
+
 TEST(Detector, sameBitsForAnyNumberOfThreadsAndTwoRuns)
 {
   const DepthGrid grid = test::renderTees(test::posesApart(4, 5), SIGMA);

@@ -174,6 +174,8 @@ TrainedModel stepModel()
   step.parameters.normal_radius = 1.3 * step.parameters.leaf;
   step.center = Eigen::Vector3d::Constant(TERRACE);
   step.diameter = 2 * std::sqrt(3) * static_cast<double>(TERRACE);
+  step.parameters.surface_spacing = 0.001;
+  step.surface = sampleSurface(step.mesh, step.parameters.surface_spacing, 1);
   const double cell = step.parameters.leaf / 3;
   step.field = DistanceField(sampleSurface(step.mesh, cell / 2, 1), cell, 1.5 * step.parameters.leaf);
   return step;
