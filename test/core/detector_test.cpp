@@ -87,17 +87,18 @@ double countOf(const DetectionResult& result, const std::string& stage)
   return entry == result.counts.end() ? 0 : entry->count;
 }
 
-TEST(Detector, aGlanceAtTheClustersDropsMostOfThemButNotTheParts)
+TEST(Detector, whatAGlanceAtTheClustersContradictsLeastIsRight)
 {
   DetectorParameters parameters;
-  parameters.clustering.promising_share = 0.25;
-  parameters.verification.fruitless_rounds = 100;  // nothing else ends the refinement
+  parameters.clustering.promising_share = 0.01;
   const auto truth = test::posesApart(4, 1);
   const DetectionResult result = detector(parameters).detect(test::renderTees(truth, SIGMA), {});
-  for (const auto& T : truth)
-    EXPECT_GE(indexOf(result.detections, T), 0) << nearestError(result.detections, T);
-  EXPECT_GT(countOf(result, "clusters"), 40);  // else there is nothing to drop
-  EXPECT_LE(countOf(result, "refined"), std::ceil(0.25 * countOf(result, "clusters")));
+  const double kept = std::ceil(0.01 * countOf(result, "clusters"));
+  EXPECT_LE(countOf(result, "refined"), kept);
+  EXPECT_GT(countOf(result, "clusters"), 20 * kept);  // or little was dropped
+  ASSERT_FALSE(result.detections.empty()) << result.message;
+  EXPECT_TRUE(
+      std::any_of(truth.begin(), truth.end(), [&](const Pose& T) { return indexOf(result.detections, T) == 0; }));
 }
 
 TEST(Detector, sameBitsForAnyNumberOfThreadsAndTwoRuns)
