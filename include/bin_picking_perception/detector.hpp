@@ -49,7 +49,7 @@ struct Detection
   double visible_fraction = 0;      ///< share of the surface facing the camera that was measured there, [0, 1]
   double rms = 0;                   ///< of the point-to-plane residuals after refinement, metres
   double votes = 0;                 ///< of its cluster
-  std::vector<Criterion> criteria;  ///< every test with its threshold
+  std::vector<Criterion> criteria;  ///< tests that were made, with their thresholds
   std::string rejection;            ///< empty: accepted; else one sentence
   /// What the view leaves open of the pose, and its score does not count; nothing: the pose is known in full.
   std::optional<UndeterminedTurn> undetermined_turn;
