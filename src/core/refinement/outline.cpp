@@ -21,9 +21,14 @@ struct Raster
   int height = 0;
   std::vector<float> depth;
 
+  std::size_t index(int x, int y) const
+  {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+
   bool covered(int x, int y) const
   {
-    return x >= 0 && y >= 0 && x < width && y < height && std::isfinite(depth[static_cast<std::size_t>(y * width + x)]);
+    return x >= 0 && y >= 0 && x < width && y < height && std::isfinite(depth[index(x, y)]);
   }
 };
 
@@ -52,8 +57,7 @@ Raster rasterize(const std::vector<Eigen::Vector3f>& points, const PinholeCamera
                       std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    float& depth =
-        raster.depth[static_cast<std::size_t>((cells[i].y() - low.y()) * raster.width + cells[i].x() - low.x())];
+    float& depth = raster.depth[raster.index(cells[i].x() - low.x(), cells[i].y() - low.y())];
     depth = std::min(depth, points[i].z());
   }
   return raster;
@@ -95,8 +99,8 @@ OutlineEvidence gatherOutlineEvidence(const TrainedModel& model, const SurfaceIn
           ++evidence.hidden;
           continue;
         }
-        const double behind = static_cast<double>(grid.z[static_cast<std::size_t>(grid.index(u, v))] -
-                                                  raster.depth[static_cast<std::size_t>(y * raster.width + x)]);
+        const double behind =
+            static_cast<double>(grid.z[static_cast<std::size_t>(grid.index(u, v))] - raster.depth[raster.index(x, y)]);
         ++(behind > tolerance ? evidence.ends : behind < -tolerance ? evidence.hidden : evidence.continues);
       }
   return evidence;
