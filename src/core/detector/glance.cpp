@@ -13,6 +13,19 @@ namespace
 {
 constexpr std::size_t GLANCE_POINTS = 20;
 constexpr std::size_t BUNDLE = 64;
+
+using Glimpse = std::pair<double, std::size_t>;  ///< minus the promise, and of which pose: the best is the least
+
+template <typename Posed>
+std::vector<Glimpse> glanceAtAll(const std::vector<Posed>& poses, const Glance& glance, const Executor& executor)
+{
+  std::vector<Glimpse> glimpses(poses.size());
+  executor.forEachBundle(poses.size(), BUNDLE, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      glimpses[i] = {-glance.at(poses[i].T_camera_object), i};
+  });
+  return glimpses;
+}
 }  // namespace
 
 Glance::Glance(const PreparedScene& scene, const TrainedModel& model, const VerificationParameters& parameters)
@@ -31,11 +44,7 @@ double Glance::at(const Pose& T_camera_object) const
 std::vector<Hypothesis> keepPromising(const std::vector<Hypothesis>& hypotheses, std::size_t per_reference,
                                       const Glance& glance, const Executor& executor)
 {
-  std::vector<std::pair<double, std::size_t>> ranked(hypotheses.size());
-  executor.forEachBundle(hypotheses.size(), BUNDLE, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      ranked[i] = {-glance.at(hypotheses[i].T_camera_object), i};
-  });
+  std::vector<Glimpse> ranked = glanceAtAll(hypotheses, glance, executor);
   // A reference point lies on one part: few of its poses are worth more, however good those of others look.
   std::vector<Hypothesis> kept;
   for (std::size_t begin = 0, end = 0; begin < ranked.size(); begin = end)
@@ -53,11 +62,7 @@ std::vector<Hypothesis> keepPromising(const std::vector<Hypothesis>& hypotheses,
 std::vector<Hypothetical> keepPromising(const std::vector<Hypothetical>& poses, double share, const Glance& glance,
                                         const Executor& executor)
 {
-  std::vector<std::pair<double, std::size_t>> ranked(poses.size());
-  executor.forEachBundle(poses.size(), BUNDLE, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      ranked[i] = {-glance.at(poses[i].T_camera_object), i};
-  });
+  std::vector<Glimpse> ranked = glanceAtAll(poses, glance, executor);
   std::sort(ranked.begin(), ranked.end());
   std::vector<std::size_t> chosen(static_cast<std::size_t>(std::ceil(share * static_cast<double>(poses.size()))));
   std::transform(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(chosen.size()), chosen.begin(),

@@ -186,7 +186,7 @@ std::vector<Hypothetical> searchPoses(const std::vector<SearchRegion>& regions, 
       poses.push_back({clusters[i].T_camera_object, clusters[i].votes, &region});
     clock.lap("clustering");
   }
-  if (glance)
+  if (glance && parameters.clustering.promising_share < 1)
     poses = keepPromising(poses, parameters.clustering.promising_share, *glance, executor);
   clock.lap("glance");
   return poses;

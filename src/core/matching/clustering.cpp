@@ -23,7 +23,7 @@ void ClusteringParameters::visit(ParameterVisitor& v)
            "strongest clusters that are looked at further; more find more hidden parts and cost time", 1, 100000},
           max_clusters);
   v.field({"promising_share", "",
-           "share of these, those that a glance at the scene contradicts least, that are ranked and refined; more find "
+           "share of the clusters, those that a glance at the scene contradicts least, that are ranked; more find "
            "more hidden parts and cost time",
            0.01, 1},
           promising_share);

@@ -19,7 +19,6 @@ constexpr float PARALLEL = 0.9f;    // cosine of 26 degrees: straight on, not ro
 struct Predicted
 {
   Eigen::Vector3f point;
-  Eigen::Vector3f normal;
   Eigen::Vector3f ray;  ///< from the camera, of length 1
   float cosine;         ///< between the normal and the ray to the camera: its share of the picture
   int u;
@@ -117,9 +116,8 @@ Predicted predict(const TrainedModel& model, std::uint32_t index, const Pose& T_
 {
   Predicted predicted;
   predicted.point = model.surface.points[index];
-  predicted.normal = model.surface.normals[index];
   predicted.ray = (predicted.point - camera).normalized();
-  predicted.cosine = -predicted.normal.dot(predicted.ray);
+  predicted.cosine = -model.surface.normals[index].dot(predicted.ray);
   const Eigen::Vector2d pixel = grid.camera.project(T_camera_object * predicted.point.cast<double>());
   predicted.u = static_cast<int>(std::lround(pixel.x()));
   predicted.v = static_cast<int>(std::lround(pixel.y()));

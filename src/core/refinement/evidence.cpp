@@ -70,7 +70,7 @@ struct PosedPoints
   std::array<float, CHUNK> x, y, z;
   std::array<float, CHUNK> nx, ny, nz;
   std::array<float, CHUNK> cosine;         ///< between the normal and the ray to the camera
-  std::array<float, CHUNK> u, v;           ///< pixels, rounded down
+  std::array<float, CHUNK> u, v;           ///< to be rounded down to pixels
   std::array<float, CHUNK> squared_aside;  ///< from the point, along its plane, to what may be its measurement
   std::array<float, CHUNK> reach;          ///< to what may be a finding at all
 

@@ -82,7 +82,7 @@ BIN_PICKING_SIMD void addSurface(const DistanceField& field, const OrientedPoint
                                  const Eigen::Isometry3f& T_object_camera, const Eigen::Vector3f& pivot,
                                  float inverse_radius, const Gate& gate, RowSums& result)
 {
-  RowSums sums = result;
+  RowSums sums = result;  // of its own, which no measured point can alias: it stays in registers
   for (std::size_t i = 0; i < measured.size(); ++i)
   {
     const Eigen::Vector3f p = T_object_camera * measured.points[i];
