@@ -30,6 +30,7 @@ struct IcpParameters
   double min_distance = 0.5;      // of the leaf: its end
   double max_normal_angle = 0.8;  // rad
   double convergence = 1e-5;      // metres of motion of the surface
+  double error_spacing = 9;       // raw pixels
 
   void visit(ParameterVisitor& v);
 };
@@ -59,6 +60,10 @@ struct MeasuredPart
 MeasuredPart measuredNear(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
                           const std::vector<Eigen::Vector3f>& normals, const DepthEdges& edges, std::size_t max_pixels);
 
+/// All measured points in that box.
+OrientedPoints surfaceNear(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
+                           const std::vector<Eigen::Vector3f>& normals);
+
 /// ICP of measured points against the distance field of the part, which knows the nearest point of its surface for
 /// every place (Fitzgibbon 2003): Gauss-Newton on the distances, robust (Tukey's biweight), the gate closing from
 /// max_distance to min_distance. Where the surface lets the part slide, as a flat face does in its own plane, its
@@ -66,4 +71,16 @@ MeasuredPart measuredNear(const TrainedModel& model, const Pose& T_camera_object
 /// Directions that nothing holds (a tube of which no end is in view) are left as they were.
 IcpResult icpDistanceField(const TrainedModel& model, const MeasuredPart& measured, const Pose& initial,
                            const IcpParameters& parameters);
+
+/// Least squares takes the errors of all points for independent, but a sensor's are alike over many pixels: then the
+/// many points of a smooth face outvote the few that know better. One Gauss-Newton step of generalised least squares,
+/// with the smooth part of the error as unknowns beside the pose: values at the nodes of a grid in the picture, in
+/// between interpolated (semiparametric regression; Ruppert, Wand and Carroll 2003). What the errors leave open stays
+/// as it was, and so does all where the step would be long: it corrects tenths of a millimetre. Outlines take no part:
+/// what they err by is alike all around the part, which no node explains.
+/// \param surface surfaceNear of a grid that has some pixels between any two nodes
+/// \param refined by icpDistanceField
+/// \param spacing of the nodes, tangent of the angle between their rays; about the length over which errors are alike
+Pose fitBesideSmoothErrors(const TrainedModel& model, const OrientedPoints& surface, const Pose& refined,
+                           double spacing, const IcpParameters& parameters);
 }  // namespace bin_picking

@@ -6,18 +6,13 @@
 #include <limits>
 
 #include "../common/simd.hpp"
-#include "bin_picking_perception/model/trained_model.hpp"
-#include "bin_picking_perception/refinement/icp.hpp"
+#include "field_rows.hpp"
 
 namespace bin_picking
 {
 namespace
 {
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
-/// A x = b. Rotations are taken about the part's middle and scaled by its radius, so that all six unknowns are lengths
-/// and their eigenvalues can be compared.
+/// A x = b.
 struct NormalEquations
 {
   Matrix6d A;
@@ -29,14 +24,15 @@ struct NormalEquations
 class RowSums
 {
 public:
-  void add(const Eigen::Vector3f& lever, const Eigen::Vector3f& gradient, float residual, float weight)
+  void add(const FieldRow& row)
   {
-    const Eigen::Vector3f turn = lever.cross(gradient);
-    const float row[8] = {turn.x(), turn.y(), turn.z(), gradient.x(), gradient.y(), gradient.z(), residual, 0};
+    const Eigen::Vector3f turn = row.lever.cross(row.gradient);
+    const Eigen::Vector3f& push = row.gradient;
+    const float numbers[8] = {turn.x(), turn.y(), turn.z(), push.x(), push.y(), push.z(), row.residual, 0};
     for (int i = 0; i < 7; ++i)
       for (int j = 0; j < 8; ++j)
-        products_[i][j] += weight * row[i] * row[j];
-    weight_ += weight;
+        products_[i][j] += row.weight * numbers[i] * numbers[j];
+    weight_ += row.weight;
     ++count_;
   }
 
@@ -61,59 +57,25 @@ private:
   int count_ = 0;
 };
 
-struct Gate
-{
-  float distance;    ///< metres
-  float min_cosine;  ///< between measured normal and gradient
-  float step;        ///< from an edge outward, metres
-};
-
-/// Tukey's biweight at the gate: a neighbour's surface just inside it pulls little. 0 outside.
-float biweight(float residual, float gate)
-{
-  const float share = residual / gate;
-  const float root = std::max(0.0f, 1 - share * share);
-  return root * root;
-}
-
-/// One row per measured point: its distance from the part's surface. In the part's frame, so that the field is read
-/// without turning its gradient back.
-BIN_PICKING_SIMD void addSurface(const DistanceField& field, const OrientedPoints& measured,
-                                 const Eigen::Isometry3f& T_object_camera, const Eigen::Vector3f& pivot,
-                                 float inverse_radius, const Gate& gate, RowSums& result)
+BIN_PICKING_SIMD void addSurface(const FieldRows& rows, const OrientedPoints& measured, RowSums& result)
 {
   RowSums sums = result;  // of its own, which no measured point can alias: it stays in registers
   for (std::size_t i = 0; i < measured.size(); ++i)
   {
-    const Eigen::Vector3f p = T_object_camera * measured.points[i];
-    const DistanceField::Sample sample = field.sample(p);
-    const float weight = biweight(sample.distance, gate.distance);
-    if (weight <= 0)
-      continue;
-    const Eigen::Vector3f normal = T_object_camera.linear() * measured.normals[i];
-    if (normal.dot(sample.gradient) > gate.min_cosine * sample.gradient.norm())
-      sums.add((p - pivot) * inverse_radius, sample.gradient, sample.distance, weight);
+    const FieldRow row = rows.ofSurface(measured.points[i], measured.normals[i]);
+    if (row.weight > 0)
+      sums.add(row);
   }
   result = sums;
 }
 
-/// One row per measured edge: a step outside of it the distance is the step.
-void addEdges(const DistanceField& field, const OrientedPoints& edges, const Eigen::Isometry3f& T_object_camera,
-              const Eigen::Vector3f& pivot, float inverse_radius, const Gate& gate, RowSums& sums)
+void addEdges(const FieldRows& rows, const OrientedPoints& edges, RowSums& sums)
 {
-  // An edge is known to about half a pixel of the working grid, a sixth of a leaf, and a surface several times better;
-  // but the errors of neighbouring pixels are alike, so that many say no more than one.
-  constexpr float WEIGHT = 0.3f;
-  constexpr float MIN_COSINE = 0.7f;  // beside a concave corner of the outline another side of the part is nearer
   for (std::size_t i = 0; i < edges.size(); ++i)
   {
-    const Eigen::Vector3f outward = T_object_camera.linear() * edges.normals[i];
-    const Eigen::Vector3f p = T_object_camera * edges.points[i] + gate.step * outward;
-    const DistanceField::Sample sample = field.sample(p);
-    const float residual = sample.distance - gate.step;
-    const float weight = WEIGHT * biweight(residual, gate.step);
-    if (weight > 0 && outward.dot(sample.gradient) > MIN_COSINE * sample.gradient.norm())
-      sums.add((p - pivot) * inverse_radius, sample.gradient, residual, weight);
+    const FieldRow row = rows.ofEdge(edges.points[i], edges.normals[i]);
+    if (row.weight > 0)
+      sums.add(row);
   }
 }
 
@@ -130,29 +92,27 @@ Vector6d solveObservable(const NormalEquations& equations)
   return x;
 }
 
-Pose applyStep(const Pose& T_object_camera, const Vector6d& x, const Eigen::Vector3d& pivot, double radius)
+}  // namespace
+
+Pose movedBy(const Vector6d& x, const Pose& T_object_camera, const TrainedModel& model)
 {
-  const Eigen::Vector3d rotation = x.head<3>() / radius;
+  const Eigen::Vector3d rotation = x.head<3>() / FieldRows::radius(model);
   const double angle = rotation.norm();
   Pose step = Pose::Identity();
   if (angle > 0)
     step.linear() = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
-  step.translation() = pivot - step.linear() * pivot + x.tail<3>();
+  step.translation() = model.center - step.linear() * model.center + x.tail<3>();
   Pose T = step * T_object_camera;
   // Products of rotations drift; the nearest rotation keeps the pose rigid.
   T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
   return T;
 }
-}  // namespace
 
 IcpResult icpDistanceField(const TrainedModel& model, const MeasuredPart& measured, const Pose& initial,
                            const IcpParameters& parameters)
 {
   constexpr int MIN_PAIRS = 12;
-  constexpr float EDGE_STEP = 0.75f;  // of the leaf: half of the field's band
   const double leaf = model.parameters.leaf;
-  const double radius = model.size.norm() / 2;
-  const Eigen::Vector3f pivot = model.center.cast<float>();
   IcpResult result;
   result.T_camera_object = initial;
   result.rms = std::numeric_limits<double>::quiet_NaN();
@@ -163,18 +123,16 @@ IcpResult icpDistanceField(const TrainedModel& model, const MeasuredPart& measur
   for (; result.iterations < parameters.max_iterations && !result.converged; ++result.iterations)
   {
     const bool gate_is_closed = distance <= parameters.min_distance * leaf * 1.001;
-    const Gate gate{static_cast<float>(distance), static_cast<float>(std::cos(parameters.max_normal_angle)),
-                    EDGE_STEP * static_cast<float>(leaf)};
-    const Eigen::Isometry3f T = T_object_camera.cast<float>();
+    const FieldRows rows(model, T_object_camera, distance, parameters.max_normal_angle);
     RowSums sums;
-    addSurface(model.field, measured.surface, T, pivot, static_cast<float>(1 / radius), gate, sums);
+    addSurface(rows, measured.surface, sums);
     result.correspondences = sums.count();
     if (result.correspondences < MIN_PAIRS)
       break;
     result.rms = sums.rms();
-    addEdges(model.field, measured.edges, T, pivot, static_cast<float>(1 / radius), gate, sums);
+    addEdges(rows, measured.edges, sums);
     const Vector6d x = solveObservable(sums.equations());
-    T_object_camera = applyStep(T_object_camera, x, model.center, radius);
+    T_object_camera = movedBy(x, T_object_camera, model);
     result.T_camera_object = T_object_camera.inverse();
     result.converged = gate_is_closed && x.head<3>().norm() + x.tail<3>().norm() < parameters.convergence;
     distance = std::max(distance * shrink, parameters.min_distance * leaf);

@@ -37,14 +37,16 @@ void addEdge(const DepthGrid& grid, int pixel, const Eigen::Vector2f& outward, O
   edges.points.push_back(p + 0.5f * static_cast<float>(grid.pitch(static_cast<double>(p.z()))) * across);
   edges.normals.push_back(across);
 }
-}  // namespace
-
-MeasuredPart measuredNear(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
-                          const std::vector<Eigen::Vector3f>& normals, const DepthEdges& edges, std::size_t max_pixels)
+PixelWindow windowOf(const TrainedModel& model, const PartBox& box, const Pose& T_camera_object, const DepthGrid& grid,
+                     std::size_t max_pixels)
 {
-  const PartBox box(model, T_camera_object);
-  const PixelWindow window(grid, T_camera_object * model.center, static_cast<double>(box.half_size.norm()), max_pixels);
-  MeasuredPart measured;
+  return {grid, T_camera_object * model.center, static_cast<double>(box.half_size.norm()), max_pixels};
+}
+
+OrientedPoints surfaceIn(const PartBox& box, const PixelWindow& window, const DepthGrid& grid,
+                         const std::vector<Eigen::Vector3f>& normals)
+{
+  OrientedPoints surface;
   for (int v = window.v_begin; v < window.v_end; v += window.step)
     for (int u = window.u_begin; u < window.u_end; u += window.step)
     {
@@ -52,9 +54,27 @@ MeasuredPart measuredNear(const TrainedModel& model, const Pose& T_camera_object
       const Eigen::Vector3f& normal = normals[static_cast<std::size_t>(i)];
       if (std::isnan(normal.x()) || !grid.valid(i) || !box.holds(grid.point(i)))
         continue;
-      measured.surface.points.push_back(grid.point(i));
-      measured.surface.normals.push_back(normal);
+      surface.points.push_back(grid.point(i));
+      surface.normals.push_back(normal);
     }
+  return surface;
+}
+}  // namespace
+
+OrientedPoints surfaceNear(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
+                           const std::vector<Eigen::Vector3f>& normals)
+{
+  const PartBox box(model, T_camera_object);
+  return surfaceIn(box, windowOf(model, box, T_camera_object, grid, grid.size()), grid, normals);
+}
+
+MeasuredPart measuredNear(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
+                          const std::vector<Eigen::Vector3f>& normals, const DepthEdges& edges, std::size_t max_pixels)
+{
+  const PartBox box(model, T_camera_object);
+  const PixelWindow window = windowOf(model, box, T_camera_object, grid, max_pixels);
+  MeasuredPart measured;
+  measured.surface = surfaceIn(box, window, grid, normals);
   for (int v = window.v_begin; v < window.v_end; v += window.step)
     for (const DepthEdge& edge : edges.rows[static_cast<std::size_t>(v)])
       if (edge.column >= window.u_begin && edge.column < window.u_end &&
