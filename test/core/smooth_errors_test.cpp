@@ -145,10 +145,18 @@ TEST(FitBesideSmoothErrors, AStepThatIsTooLongIsNotTaken)
   EXPECT_TRUE(scene.fit(astray).matrix() == astray.matrix());
 }
 
-TEST(FitBesideSmoothErrors, WithoutPointsThePoseStays)
+TEST(FitBesideSmoothErrors, WithFewerPointsThanNodesThePoseStays)
 {
   const Pose pose = test::posesApart(1, 5)[0];
-  EXPECT_TRUE(fitBesideSmoothErrors(*test::teeModel(), {}, pose, SPACING, {}).matrix() == pose.matrix());
+  const TeeScene scene({pose}, SmoothNoise(5));
+  const OrientedPoints surface = surfaceNear(*test::teeModel(), pose, scene.grid, scene.normals);
+  const auto fit = [&](const OrientedPoints& points, double spacing) {
+    return fitBesideSmoothErrors(*test::teeModel(), points, pose, spacing, {});
+  };
+  EXPECT_TRUE(fit({}, SPACING).matrix() == pose.matrix());
+  EXPECT_TRUE(fit(surface, SPACING / 6).matrix() == pose.matrix()) << "a node per pixel";
+  EXPECT_TRUE(fit(surface, 1e-30).matrix() == pose.matrix());
+  EXPECT_FALSE(fit(surface, SPACING).matrix() == pose.matrix()) << "the others would not test it";
 }
 }  // namespace
 }  // namespace bin_picking

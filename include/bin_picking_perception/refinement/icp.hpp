@@ -77,7 +77,7 @@ IcpResult icpDistanceField(const TrainedModel& model, const MeasuredPart& measur
 /// with the smooth part of the error as unknowns beside the pose: values at the nodes of a grid in the picture, in
 /// between interpolated (semiparametric regression; Ruppert, Wand and Carroll 2003). What the errors leave open stays
 /// as it was, and so does all where the step would be long: it corrects tenths of a millimetre. Outlines take no part:
-/// what they err by is alike all around the part, which no node explains.
+/// what they err by is alike all around the part, which no node explains. Where points are fewer than nodes, all stays.
 /// \param surface surfaceNear of a grid that has some pixels between any two nodes
 /// \param refined by icpDistanceField
 /// \param spacing of the nodes, tangent of the angle between their rays; about the length over which errors are alike

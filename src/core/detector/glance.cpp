@@ -26,6 +26,13 @@ std::vector<Glimpse> glanceAtAll(const std::vector<Posed>& poses, const Glance& 
   });
   return glimpses;
 }
+bool anyProposesMoreThan(std::size_t count, const std::vector<Hypothesis>& hypotheses)
+{
+  for (std::size_t i = count; i < hypotheses.size(); ++i)
+    if (hypotheses[i].reference == hypotheses[i - count].reference)
+      return true;
+  return false;
+}
 }  // namespace
 
 Glance::Glance(const PreparedScene& scene, const TrainedModel& model, const VerificationParameters& parameters)
@@ -44,6 +51,8 @@ double Glance::at(const Pose& T_camera_object) const
 std::vector<Hypothesis> keepPromising(const std::vector<Hypothesis>& hypotheses, std::size_t per_reference,
                                       const Glance& glance, const Executor& executor)
 {
+  if (!anyProposesMoreThan(per_reference, hypotheses))
+    return hypotheses;
   std::vector<Glimpse> ranked = glanceAtAll(hypotheses, glance, executor);
   // A reference point lies on one part: few of its poses are worth more, however good those of others look.
   std::vector<Hypothesis> kept;

@@ -21,10 +21,11 @@ void IcpParameters::visit(ParameterVisitor& v)
   v.field({"max_normal_angle", "rad", "pairs whose normals differ by more are not used", 0.05, 3.2}, max_normal_angle);
   v.field({"convergence", "m", "the refinement ends when the surface moves less than this in an iteration", 1e-9, 1e-3},
           convergence);
-  v.field({"error_spacing", "",
-           "pixels of the sensor over which the errors of its depths are about alike; 0: taken for independent; where "
-           "they are not, poses then err by a third more",
-           0, 200},
-          error_spacing);
+  v.field(
+      {"error_spacing", "",
+       "pixels of the sensor over which the errors of its depths are about alike; 0, or less than some pixels of the "
+       "working grid: taken for independent; where they are not, poses then err by a third more",
+       0, 200},
+      error_spacing);
 }
 }  // namespace bin_picking

@@ -36,12 +36,17 @@ public:
       low_ = low_.min(place(p));
       high = high.max(place(p));
     }
+    is_coarse_ = (high - low_ + 2).prod() < static_cast<float>(measured.size());
+    if (!is_coarse_)
+      return;
     const Eigen::Array2i cells = (high - low_).cast<int>() + 1;
     along_ = cells.x() < cells.y() ? 0 : 1;
     short_side_ = cells.minCoeff() + 1;
     count_ = short_side_ * (cells.maxCoeff() + 1);
   }
 
+  /// There are more points than nodes: less tells nothing of the pose, and would take long.
+  bool isCoarse() const { return is_coarse_; }
   int count() const { return count_; }
   int shortSide() const { return short_side_; }
 
@@ -67,6 +72,7 @@ private:
 
   float scale_;
   Eigen::Array2f low_;
+  bool is_coarse_ = false;
   int along_ = 0;  ///< coordinate that runs along the shorter side
   int short_side_ = 0;
   int count_ = 0;
@@ -168,8 +174,8 @@ Numbers numbersOf(const FieldRow& row)
 }
 }  // namespace
 
-Pose fitBesideSmoothErrors(const TrainedModel& model, const OrientedPoints& surface, const Pose& refined, double spacing,
-                           const IcpParameters& parameters)
+Pose fitBesideSmoothErrors(const TrainedModel& model, const OrientedPoints& surface, const Pose& refined,
+                           double spacing, const IcpParameters& parameters)
 {
   if (surface.empty())
     return refined;
@@ -177,6 +183,8 @@ Pose fitBesideSmoothErrors(const TrainedModel& model, const OrientedPoints& surf
   const double leaf = model.parameters.leaf;
   const FieldRows rows(model, T_object_camera, parameters.min_distance * leaf, parameters.max_normal_angle);
   const NodeGrid grid(surface, spacing);
+  if (!grid.isCoarse())
+    return refined;
   NodeEquations equations(grid);
   for (std::size_t i = 0; i < surface.size(); ++i)
   {
