@@ -25,7 +25,7 @@ struct VotingParameters
   int max_bucket = 0;
   int max_votes = 30000;
   bool skip_repeated = true;
-  int peaks_per_reference = 4;
+  int peaks_per_reference = 6;
   double min_peak_share = 0.4;
   bool sum_adjacent_angles = true;
 
