@@ -12,3 +12,10 @@
 #else
 #define BIN_PICKING_SIMD
 #endif
+
+/// For what such a function calls in its loop: not inlined, it would be compiled once only, for every processor.
+#if defined(__GNUC__)
+#define BIN_PICKING_INLINE __attribute__((always_inline)) inline
+#else
+#define BIN_PICKING_INLINE inline
+#endif

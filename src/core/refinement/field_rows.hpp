@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../common/simd.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
 #include "bin_picking_perception/refinement/icp.hpp"
 
@@ -42,7 +43,7 @@ public:
   static double radius(const TrainedModel& model) { return model.size.norm() / 2; }
 
   /// A measured surface point has no distance from the surface.
-  FieldRow ofSurface(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const
+  BIN_PICKING_INLINE FieldRow ofSurface(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const
   {
     const Eigen::Vector3f p = T_object_camera_ * point;
     const DistanceField::Sample sample = field_.sample(p);

@@ -78,6 +78,35 @@ private:
   int count_ = 0;
 };
 
+/// target[k] -= factor * source[k]
+inline void subtract(double* __restrict target, const double* __restrict source, double factor, int count)
+{
+  for (int k = 0; k < count; ++k)
+    target[k] -= factor * source[k];
+}
+
+/// Cholesky, with the couplings as further columns; what is left of `pose` is the Schur complement.
+/// \param band upper half of the nodes' matrix, rows of `reach` \param reach more than numbers of nodes that share a
+/// point differ
+BIN_PICKING_SIMD void eliminateNodes(double* band, int reach, Numbers* coupling, int count, Numbers* pose)
+{
+  for (int node = 0; node < count; ++node)
+  {
+    const double* row = band + static_cast<std::ptrdiff_t>(node) * reach;
+    const double inverse = 1 / row[0];
+    for (int k = 1; k < std::min(reach, count - node); ++k)
+    {
+      if (row[k] == 0)
+        continue;
+      const double factor = row[k] * inverse;
+      subtract(band + static_cast<std::ptrdiff_t>(node + k) * reach, row + k, factor, reach - k);
+      subtract(coupling[node + k].data(), coupling[node].data(), factor, COLUMNS);
+    }
+    for (int i = 0; i < COLUMNS; ++i)
+      subtract(pose[i].data(), coupling[node].data(), coupling[node][static_cast<std::size_t>(i)] * inverse, COLUMNS);
+  }
+}
+
 /// The normal equations of node values and pose, of which the former are eliminated.
 class NodeEquations
 {
@@ -112,7 +141,7 @@ public:
   /// The most likely step of the pose, whatever the node values.
   Vector6d solve()
   {
-    eliminateNodes();
+    eliminateNodes(band_.data(), reach_, coupling_.data(), count_, pose_.data());
     Matrix6d A;
     Vector6d b;
     for (std::size_t i = 0; i < 6; ++i)
@@ -129,9 +158,6 @@ private:
   /// \pre first <= second < first + reach_
   double& at(int first, int second) { return band_[static_cast<std::size_t>(first * reach_ + second - first)]; }
 
-  /// Cholesky, with the couplings as further columns; what is left is the Schur complement. Vectors along the rows.
-  void eliminateNodes();
-
   int reach_;  ///< numbers of nodes that share a point differ by less
   int count_;
   std::vector<double> band_;  ///< upper half, rows of reach_
@@ -139,38 +165,22 @@ private:
   std::array<Numbers, COLUMNS> pose_ = {};
 };
 
-/// target[k] -= factor * source[k]
-BIN_PICKING_SIMD void subtract(double* __restrict target, const double* __restrict source, double factor, int count)
-{
-  for (int k = 0; k < count; ++k)
-    target[k] -= factor * source[k];
-}
-
-void NodeEquations::eliminateNodes()
-{
-  for (int node = 0; node < count_; ++node)
-  {
-    const double* row = &at(node, node);
-    const Numbers& coupling = coupling_[static_cast<std::size_t>(node)];
-    const double inverse = 1 / row[0];
-    for (int k = 1; k < std::min(reach_, count_ - node); ++k)
-    {
-      if (row[k] == 0)
-        continue;
-      const double factor = row[k] * inverse;
-      subtract(&at(node + k, node + k), row + k, factor, reach_ - k);
-      subtract(coupling_[static_cast<std::size_t>(node + k)].data(), coupling.data(), factor, COLUMNS);
-    }
-    for (std::size_t i = 0; i < COLUMNS; ++i)
-      subtract(pose_[i].data(), coupling.data(), coupling[i] * inverse, COLUMNS);
-  }
-}
-
 Numbers numbersOf(const FieldRow& row)
 {
   const Eigen::Vector3d turn = row.lever.cross(row.gradient).cast<double>();
   const Eigen::Vector3d push = row.gradient.cast<double>();
   return {turn.x(), turn.y(), turn.z(), push.x(), push.y(), push.z(), static_cast<double>(row.residual), 0};
+}
+
+BIN_PICKING_SIMD void addPoints(const FieldRows& rows, const OrientedPoints& surface, const NodeGrid& grid,
+                                NodeEquations& equations)
+{
+  for (std::size_t i = 0; i < surface.size(); ++i)
+  {
+    const FieldRow row = rows.ofSurface(surface.points[i], surface.normals[i]);
+    if (row.weight > 0)
+      equations.add(grid.at(surface.points[i]), numbersOf(row), static_cast<double>(row.weight));
+  }
 }
 }  // namespace
 
@@ -186,12 +196,7 @@ Pose fitBesideSmoothErrors(const TrainedModel& model, const OrientedPoints& surf
   if (!grid.isCoarse())
     return refined;
   NodeEquations equations(grid);
-  for (std::size_t i = 0; i < surface.size(); ++i)
-  {
-    const FieldRow row = rows.ofSurface(surface.points[i], surface.normals[i]);
-    if (row.weight > 0)
-      equations.add(grid.at(surface.points[i]), numbersOf(row), static_cast<double>(row.weight));
-  }
+  addPoints(rows, surface, grid, equations);
   const Vector6d step = equations.solve();
   const bool small = step.head<3>().norm() + step.tail<3>().norm() < LONGEST_STEP * leaf;
   return small ? movedBy(step, T_object_camera, model).inverse() : refined;
