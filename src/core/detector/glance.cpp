@@ -26,6 +26,7 @@ std::vector<Glimpse> glanceAtAll(const std::vector<Posed>& poses, const Glance& 
   });
   return glimpses;
 }
+
 bool anyProposesMoreThan(std::size_t count, const std::vector<Hypothesis>& hypotheses)
 {
   for (std::size_t i = count; i < hypotheses.size(); ++i)

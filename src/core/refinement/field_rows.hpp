@@ -25,7 +25,7 @@ struct FieldRow
   float weight = 0;          ///< 0: says nothing
 };
 
-/// The poses' frame is the part's, so that the field is read without turning its gradient back.
+/// Makes the rows of a pose. In the part's frame, so that the field is read without turning its gradient back.
 class FieldRows
 {
 public:
@@ -48,7 +48,8 @@ public:
     const Eigen::Vector3f p = T_object_camera_ * point;
     const DistanceField::Sample sample = field_.sample(p);
     FieldRow row{(p - middle_) * inverse_radius_, sample.gradient, sample.distance, biweight(sample.distance, gate_)};
-    if ((T_object_camera_.linear() * normal).dot(sample.gradient) <= min_cosine_ * sample.gradient.norm())
+    if (row.weight > 0 &&
+        (T_object_camera_.linear() * normal).dot(sample.gradient) <= min_cosine_ * sample.gradient.norm())
       row.weight = 0;
     return row;
   }

@@ -91,7 +91,6 @@ Vector6d solveObservable(const NormalEquations& equations)
       x += solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(equations.b) / values[i]);
   return x;
 }
-
 }  // namespace
 
 Pose movedBy(const Vector6d& x, const Pose& T_object_camera, const TrainedModel& model)
