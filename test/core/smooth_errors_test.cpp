@@ -49,11 +49,12 @@ private:
 /// Tees above a floor, measured with independent errors of 0.02 mm and smooth ones.
 struct TeeScene
 {
-  TeeScene(const std::vector<Pose>& poses, const SmoothNoise& noise) : grid(test::renderTees(poses, 0.00002))
+  TeeScene(const std::vector<Pose>& poses, const SmoothNoise& noise, double error = ERROR)
+      : grid(test::renderTees(poses, 0.00002))
   {
     for (int v = 0; v < grid.height; ++v)
       for (int u = 0; u < grid.width; ++u)
-        disturb(grid.index(u, v), ERROR * noise.at(u, v));
+        disturb(grid.index(u, v), error * noise.at(u, v));
     const Executor executor(1);
     const ConnectedRuns runs = connectedRuns(grid, EdgeRule(), executor);
     normals = estimateGridNormals(grid, runs, test::teeModel()->parameters.normal_radius, executor);
@@ -125,8 +126,7 @@ TEST(FitBesideSmoothErrors, ErrsLessThanLeastSquaresWhereErrorsAreAlikeOverManyP
 TEST(FitBesideSmoothErrors, KeepsWhatIsRight)
 {
   const std::vector<Pose> poses = test::posesApart(4, 3);
-  TeeScene scene(poses, SmoothNoise(3));
-  scene.grid = test::renderTees(poses, 0.00002);
+  const TeeScene scene(poses, SmoothNoise(3), 0);
   for (const Pose& truth : poses)
   {
     // The distance field rounds by some hundredths of a millimetre, over levers of 20 to 40 mm.

@@ -66,8 +66,8 @@ Pose polish(const Pose& T_camera_object, const PreparedScene& scene, const Train
   return icpOnField(T_camera_object, ICP_PIXELS, scene, model, icp);
 }
 
-/// The last tenths of a millimetre, with every pixel: less than any test of a pose resolves, so only poses that have
-/// passed them all come to it.
+/// The last tenths of a millimetre, with every pixel; dear, so only poses that have passed the tests come to it. These
+/// are not made again: the step is bounded.
 Pose finish(const Pose& T_camera_object, const PreparedScene& scene, const TrainedModel& model,
             const IcpParameters& icp)
 {

@@ -93,20 +93,6 @@ Vector6d solveObservable(const NormalEquations& equations)
 }
 }  // namespace
 
-Pose movedBy(const Vector6d& x, const Pose& T_object_camera, const TrainedModel& model)
-{
-  const Eigen::Vector3d rotation = x.head<3>() / FieldRows::radius(model);
-  const double angle = rotation.norm();
-  Pose step = Pose::Identity();
-  if (angle > 0)
-    step.linear() = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
-  step.translation() = model.center - step.linear() * model.center + x.tail<3>();
-  Pose T = step * T_object_camera;
-  // Products of rotations drift; the nearest rotation keeps the pose rigid.
-  T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
-  return T;
-}
-
 IcpResult icpDistanceField(const TrainedModel& model, const MeasuredPart& measured, const Pose& initial,
                            const IcpParameters& parameters)
 {
