@@ -56,6 +56,17 @@ Pose refineRoughly(const Hypothetical& pose, const PreparedScene& scene, const T
   return pose.T_camera_object;
 }
 
+/// The last tenths of a millimetre, with every pixel.
+Pose fitAmidErrors(const Pose& T_camera_object, const PreparedScene& scene, const TrainedModel& model,
+                   const IcpParameters& icp)
+{
+  const double spacing = icp.error_spacing * scene.grid.pitch(1) / scene.reduction;
+  if (spacing <= 0)
+    return T_camera_object;
+  const OrientedPoints surface = surfaceNear(model, T_camera_object, scene.grid, scene.normals);
+  return fitBesideSmoothErrors(model, surface, T_camera_object, spacing, icp);
+}
+
 /// The other half, with all points and a narrow gate.
 Pose polish(const Pose& T_camera_object, const PreparedScene& scene, const TrainedModel& model, IcpParameters icp)
 {
@@ -63,19 +74,7 @@ Pose polish(const Pose& T_camera_object, const PreparedScene& scene, const Train
     return T_camera_object;
   icp.max_iterations /= 2;
   icp.max_distance = icp.min_distance;
-  return icpOnField(T_camera_object, ICP_PIXELS, scene, model, icp);
-}
-
-/// The last tenths of a millimetre, with every pixel; dear, so only poses that have passed the tests come to it. These
-/// are not made again: the step is bounded.
-Pose finish(const Pose& T_camera_object, const PreparedScene& scene, const TrainedModel& model,
-            const IcpParameters& icp)
-{
-  const double spacing = icp.error_spacing * scene.grid.pitch(1) / scene.reduction;
-  if (icp.method != IcpMethod::DistanceField || spacing <= 0)
-    return T_camera_object;
-  const OrientedPoints surface = surfaceNear(model, T_camera_object, scene.grid, scene.normals);
-  return fitBesideSmoothErrors(model, surface, T_camera_object, spacing, icp);
+  return fitAmidErrors(icpOnField(T_camera_object, ICP_PIXELS, scene, model, icp), scene, model, icp);
 }
 
 /// Neither finer refinement nor another turn would save this pose.
@@ -220,8 +219,6 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
   detection.score = verification.enabled ? confidence(quality) : detection.matching_rate;
   judge(detection, quality, verification);
   requireNoContinuation(detection, evidence, tested, scene, model, verification);
-  if (detection.rejection.empty())
-    detection.T_camera_object = finish(T, scene, model, parameters.icp);
   assessed.cells = coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell);
   return assessed;
 }
