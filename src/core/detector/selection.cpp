@@ -38,30 +38,51 @@ double sharedPart(const std::vector<int>& cells, const std::vector<int>& explain
   return cells.empty() ? 0 : static_cast<double>(shared) / static_cast<double>(cells.size());
 }
 
-void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& parameters, DetectionResult& result)
+namespace
 {
-  std::stable_sort(assessed.begin(), assessed.end(),
-                   [](const Assessed& a, const Assessed& b) { return a.detection.score > b.detection.score; });
-  std::vector<int> explained;  // by accepted detections, ascending
-  for (auto& candidate : assessed)
+/// How much of the picture a pose can be expected to explain: all its cells if it is right, none if it is not. Wrong
+/// poses fit well to the little that they explain and say that the rest is hidden.
+double expectedCells(const Assessed& pose) { return pose.detection.score * static_cast<double>(pose.cells.size()); }
+
+/// What is measured lies on one part: of accepted poses that explain the same, the one expected to explain most stays.
+void rejectOverlapping(std::vector<Assessed>& poses, double max_overlap)
+{
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const Assessed& a, const Assessed& b) { return expectedCells(a) > expectedCells(b); });
+  std::vector<int> explained;  // ascending
+  for (Assessed& pose : poses)
   {
-    Detection& detection = candidate.detection;
-    const double overlap = detection.rejection.empty() ? sharedPart(candidate.cells, explained) : 0;
-    if (detection.rejection.empty() && overlap > parameters.verification.overlap)
-      detection.rejection = "a better detection explains " + roundedText(100 * overlap, 0) + " % of what it explains";
-    if (detection.rejection.empty() && static_cast<int>(result.detections.size()) >= parameters.max_detections)
-      detection.rejection = "max_detections better ones were found";
-    if (!detection.rejection.empty())
+    if (!pose.detection.rejection.empty())
+      continue;
+    const double overlap = sharedPart(pose.cells, explained);
+    if (overlap > max_overlap)
     {
-      if (static_cast<int>(result.rejected.size()) < parameters.max_rejected)
-        result.rejected.push_back(std::move(detection));
+      pose.detection.rejection =
+          "a detection that explains more explains " + roundedText(100 * overlap, 0) + " % of the same points";
       continue;
     }
     std::vector<int> merged;
-    std::set_union(explained.begin(), explained.end(), candidate.cells.begin(), candidate.cells.end(),
+    std::set_union(explained.begin(), explained.end(), pose.cells.begin(), pose.cells.end(),
                    std::back_inserter(merged));
     explained = std::move(merged);
-    result.detections.push_back(std::move(detection));
+  }
+}
+}  // namespace
+
+void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& parameters, DetectionResult& result)
+{
+  rejectOverlapping(assessed, parameters.verification.overlap);
+  std::stable_sort(assessed.begin(), assessed.end(),
+                   [](const Assessed& a, const Assessed& b) { return a.detection.score > b.detection.score; });
+  for (Assessed& pose : assessed)
+  {
+    Detection& detection = pose.detection;
+    if (detection.rejection.empty() && static_cast<int>(result.detections.size()) >= parameters.max_detections)
+      detection.rejection = "max_detections better ones were found";
+    if (detection.rejection.empty())
+      result.detections.push_back(std::move(detection));
+    else if (static_cast<int>(result.rejected.size()) < parameters.max_rejected)
+      result.rejected.push_back(std::move(detection));
   }
 }
 }  // namespace bin_picking

@@ -125,7 +125,7 @@ double promise(const PoseEvidence& evidence, const VerificationParameters& param
 /// Distance to the part's surface that still explains a measured point, metres.
 double depthTolerance(const PreparedScene& scene, const TrainedModel& model, const VerificationParameters& parameters);
 
-/// One pose refined, settled among its rivals, and tested.
+/// One pose refined, settled among its rivals, and tested; once more from there if it fails by little.
 Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
                 const DetectorParameters& parameters, int comparison_cell);
 
@@ -147,6 +147,6 @@ std::string failureText(const Criterion& criterion);
 /// Sets the code and the message from what was found, rejected and left undone.
 void summarize(DetectionResult& result);
 
-/// Sorts by score; rejects what failed a criterion and what explains the same cells as better ones.
+/// Sorts by score; rejects what failed a criterion, and what explains the same cells as poses that explain more.
 void selectDetections(std::vector<Assessed> assessed, const DetectorParameters& parameters, DetectionResult& result);
 }  // namespace bin_picking

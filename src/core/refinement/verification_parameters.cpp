@@ -65,9 +65,11 @@ void VerificationParameters::visit(ParameterVisitor& v)
            "bin's pose may be wrong",
            0, 1},
           max_bin_penetration);
-  v.field(
-      {"overlap", "", "a detection that shares more than this part of its pixels with better ones is dropped", 0.01, 1},
-      overlap);
+  v.field({"overlap", "",
+           "a detection that shares more than this part of its pixels with others is dropped, unless it explains more "
+           "than they do",
+           0.01, 1},
+          overlap);
   v.field({"max_refined", "", "clusters that are refined and tested in full, best first", 1, 10000}, max_refined);
   v.field({"fruitless_rounds", "",
            "poses are refined in rounds of 8, most promising first; the search ends after so many rounds in a row of "
