@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
+#include <algorithm>
 #include <cmath>
 
 #include "bin_picking_perception/refinement/confidence.hpp"
@@ -170,10 +171,10 @@ void giveUp(Detection& detection, const PoseEvidence& evidence, const Verificati
           {"inlier_share", evidence.inlierShare(parameters.unmeasured_weight), parameters.min_inlier_share, false});
   require(detection, {"visible_fraction", detection.visible_fraction, parameters.min_visible_fraction, false});
 }
-}  // namespace
 
-Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
-                const DetectorParameters& parameters, int comparison_cell)
+/// Refined, settled among its rivals, and tested.
+Assessed refineAndTest(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
+                       const DetectorParameters& parameters, int comparison_cell)
 {
   const VerificationParameters& verification = parameters.verification;
   const double leaf = model.parameters.leaf;
@@ -221,5 +222,29 @@ Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const Trai
   requireNoContinuation(detection, evidence, tested, scene, model, verification);
   assessed.cells = coveredCells(evidence.pixels, scene.grid.width, scene.reduction, comparison_cell);
   return assessed;
+}
+
+/// Whether what a rejected pose lacks may be no more than some steps of ICP. It is not where another turn explains as
+/// much.
+bool mayLackSteps(const Detection& detection)
+{
+  constexpr double MIN_SCORE = 0.3;  // hardly any with a lower one is near a right pose
+  return !detection.rejection.empty() && detection.score > MIN_SCORE &&
+         std::none_of(detection.criteria.begin(), detection.criteria.end(), [](const Criterion& criterion) {
+           return criterion.name == "turn_margin" && !criterion.passed();
+         });
+}
+}  // namespace
+
+Assessed assess(const Hypothetical& pose, const PreparedScene& scene, const TrainedModel& model,
+                const DetectorParameters& parameters, int comparison_cell)
+{
+  Assessed first = refineAndTest(pose, scene, model, parameters, comparison_cell);
+  if (!parameters.verification.enabled || !mayLackSteps(first.detection))
+    return first;
+  Hypothetical again = pose;
+  again.T_camera_object = first.detection.T_camera_object;
+  Assessed second = refineAndTest(again, scene, model, parameters, comparison_cell);
+  return second.detection.score > first.detection.score ? second : first;
 }
 }  // namespace bin_picking
