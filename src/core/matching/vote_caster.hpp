@@ -8,7 +8,7 @@
 #include "accumulator.hpp"
 #include "bin_picking_perception/matching/voting.hpp"
 #include "pair_quantizer.hpp"
-#include "tile_index.hpp"
+#include "../common/tile_index.hpp"
 
 namespace bin_picking
 {
