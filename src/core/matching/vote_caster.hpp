@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "../common/tile_index.hpp"
 #include "accumulator.hpp"
 #include "bin_picking_perception/matching/voting.hpp"
 #include "pair_quantizer.hpp"
-#include "../common/tile_index.hpp"
 
 namespace bin_picking
 {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +8,7 @@
 #include "bin_picking_perception/scene/curvature.hpp"
 #include "bin_picking_perception/scene/preprocessing.hpp"
 #include "neighbourhood.hpp"
+#include "normal_spread.hpp"
 #include "quadric_fit.hpp"
 
 namespace bin_picking
@@ -23,16 +23,6 @@ constexpr double MIN_VARIATION_POINTS = 5;
 constexpr double MIN_COMPLETE_AREA = 0.8;
 /// A pixel on a surface seen almost from the side stands for no more than this many times its frontal area.
 constexpr float MAX_FORESHORTENING = 5;
-
-/// Rows: two axes of the tangent plane and the normal, in units of the radius, so that fits are well scaled.
-Eigen::Matrix3f tangentFrame(const Eigen::Vector3f& normal, double radius)
-{
-  Eigen::Matrix3f frame;
-  frame.row(0) = normal.unitOrthogonal();
-  frame.row(1) = normal.cross(normal.unitOrthogonal());
-  frame.row(2) = normal;
-  return frame / static_cast<float>(radius);
-}
 
 double sum(const std::array<float, Neighbourhood::LANES>& lanes)
 {
@@ -62,25 +52,11 @@ BIN_PICKING_SIMD double surfaceArea(const Neighbourhood& found, const Eigen::Vec
   return sum(area);
 }
 
-/// (pc1 + pc2) / 2: half the trace of the covariance of the normals projected onto the tangent plane.
 double normalVariation(const Neighbourhood& found, const Eigen::Vector3f& normal, float min_cosine)
 {
-  Eigen::Vector3d total = Eigen::Vector3d::Zero();
-  double squares = 0;
-  double count = 0;
-  for (std::size_t k = 0; k < found.size; ++k)
-  {
-    const Eigen::Vector3f n(found.nx[k], found.ny[k], found.nz[k]);
-    if (!(n.dot(normal) >= min_cosine))
-      continue;
-    const Eigen::Vector3d projected = (n - normal.dot(n) * normal).cast<double>();
-    total += projected;
-    squares += projected.squaredNorm();
-    count += 1;
-  }
-  if (count < MIN_VARIATION_POINTS)
-    return std::numeric_limits<double>::quiet_NaN();
-  return (squares / count - (total / count).squaredNorm()) / 2;
+  NormalSpread spread(normal);
+  spread.add(found, min_cosine);
+  return spread.count() < MIN_VARIATION_POINTS ? std::numeric_limits<double>::quiet_NaN() : spread.variation();
 }
 
 double meanCurvature(const Neighbourhood& found, const Eigen::Vector3f& normal, double radius, float min_cosine)

@@ -13,6 +13,13 @@ constexpr double PI = 3.14159265358979323846;
 constexpr double MAX_NEIGHBOURS = 150;
 }  // namespace
 
+void padWithZeros(Neighbourhood& found)
+{
+  for (std::size_t k = found.size; k % Neighbourhood::LANES != 0; ++k)
+    for (auto* plane : {&found.x, &found.y, &found.z, &found.nx, &found.ny, &found.nz, &found.weight})
+      (*plane)[k] = 0;
+}
+
 void NeighbourSearch::find(const Eigen::Vector3f& centre, int pixel, Neighbourhood& found) const
 {
   const auto i = static_cast<std::size_t>(pixel);
@@ -27,9 +34,7 @@ void NeighbourSearch::find(const Eigen::Vector3f& centre, int pixel, Neighbourho
   within = true;
   for (int k = 1; within && k * found.stride <= runs_.down[i]; ++k)
     within = addRow(centre, pixel + k * step, found);
-  for (std::size_t k = found.size; k % Neighbourhood::LANES != 0; ++k)
-    for (auto* plane : {&found.x, &found.y, &found.z, &found.nx, &found.ny, &found.nz, &found.weight})
-      (*plane)[k] = 0;
+  padWithZeros(found);
 }
 
 /// The pixel and what lies left and right of it. \return whether the pixel itself is within the radius

@@ -25,6 +25,9 @@ struct Neighbourhood
   int stride = 1;        ///< pixels from one to the next
 };
 
+/// All planes up to the next multiple of LANES.
+void padWithZeros(Neighbourhood& found);
+
 /// Finds what is connected to a pixel within a radius: up and down its column and from there along the rows, every
 /// stride-th pixel, as far as there is no depth edge. Strides are such that a fit sees no more points than it needs.
 class NeighbourSearch

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include "quadric_fit.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 
@@ -139,6 +140,15 @@ double QuadricMoments::meanCurvature() const
   if (!solve(m, q, MIN_PIVOT * count()))
     return std::numeric_limits<double>::quiet_NaN();
   return quadricCurvature(q[0], q[1], q[2], q[3], q[4]).mean;
+}
+
+Eigen::Matrix3f tangentFrame(const Eigen::Vector3f& normal, double radius)
+{
+  Eigen::Matrix3f frame;
+  frame.row(0) = normal.unitOrthogonal();
+  frame.row(1) = normal.cross(normal.unitOrthogonal());
+  frame.row(2) = normal;
+  return frame / static_cast<float>(radius);
 }
 
 QuadricMoments quadricMoments(const Neighbourhood& found, const Eigen::Matrix3f& frame, const Eigen::Vector3f& normal,

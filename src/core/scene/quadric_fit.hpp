@@ -16,8 +16,16 @@ public:
   static constexpr std::size_t NUM_POWERS = 15;  // x^i y^j up to the fourth order
   static constexpr std::size_t NUM_RIGHT = 6;    // z times those up to the second
 
+  QuadricMoments() : sums_{} {}
   /// \param sums in the order of the enumerators
   explicit QuadricMoments(const std::array<double, NUM_POWERS + NUM_RIGHT>& sums) : sums_(sums) {}
+
+  QuadricMoments& operator+=(const QuadricMoments& other)
+  {
+    for (std::size_t k = 0; k < sums_.size(); ++k)
+      sums_[k] += other.sums_[k];
+    return *this;
+  }
 
   double count() const { return sums_[0]; }
   /// Mean curvature at the origin (Equations 1 to 4); NaN if the points do not fix the quadric.
@@ -26,6 +34,9 @@ public:
 private:
   std::array<double, NUM_POWERS + NUM_RIGHT> sums_;
 };
+
+/// Rows: two axes of the tangent plane and the normal, in units of the radius, so that fits are well scaled.
+Eigen::Matrix3f tangentFrame(const Eigen::Vector3f& normal, double radius);
 
 /// Moments of the neighbours whose normal is turned by no more than min_cosine says.
 /// \param frame maps offsets from the sample into the frame of the fit

@@ -3,14 +3,11 @@
 #include "bin_picking_perception/scene/surface_resampling.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <numeric>
-#include <tuple>
 
-#include "bin_picking_perception/common/kd_tree.hpp"
 #include "bin_picking_perception/common/parallel.hpp"
+#include "tiled_points.hpp"
+#include "voxel_order.hpp"
 
 namespace bin_picking
 {
@@ -18,19 +15,8 @@ namespace
 {
 constexpr float SPLIT_COSINE = 0.866f;  // 30 degrees
 constexpr std::size_t MAX_POINTS_PER_VOXEL = 3;
-constexpr std::size_t BLOCK = 256;
-constexpr std::size_t MIN_PLANE_POINTS = 5;
-
-struct Voxel
-{
-  std::int32_t x, y, z;
-  int index;
-  bool operator<(const Voxel& other) const
-  {
-    return std::tie(z, y, x, index) < std::tie(other.z, other.y, other.x, other.index);
-  }
-  bool sameCell(const Voxel& other) const { return x == other.x && y == other.y && z == other.z; }
-};
+constexpr std::size_t BUNDLE = 64;
+constexpr double MIN_PLANE_POINTS = 5;
 
 struct Group
 {
@@ -57,23 +43,14 @@ void addToGroups(std::vector<Group>& groups, const Eigen::Vector3f& point, const
 
 OrientedPoints voxelDownsample(const OrientedPoints& dense, double leaf, int min_points)
 {
-  std::vector<Voxel> voxels(dense.size());
-  const auto scale = static_cast<float>(1.0 / leaf);
-  for (std::size_t i = 0; i < dense.size(); ++i)
-  {
-    const Eigen::Vector3f cell = dense.points[i] * scale;
-    voxels[i] = {static_cast<std::int32_t>(std::floor(cell.x())), static_cast<std::int32_t>(std::floor(cell.y())),
-                 static_cast<std::int32_t>(std::floor(cell.z())), static_cast<int>(i)};
-  }
-  std::sort(voxels.begin(), voxels.end());
-
+  const std::vector<VoxelMember> order = voxelOrder(dense.points, leaf);
   OrientedPoints result;
   std::vector<Group> groups;
-  for (std::size_t i = 0; i < voxels.size(); ++i)
+  for (std::size_t i = 0; i < order.size(); ++i)
   {
-    const auto k = static_cast<std::size_t>(voxels[i].index);
+    const std::size_t k = order[i].point;
     addToGroups(groups, dense.points[k], dense.normals[k]);
-    if (i + 1 < voxels.size() && voxels[i].sameCell(voxels[i + 1]))
+    if (i + 1 < order.size() && order[i].voxel == order[i + 1].voxel)
       continue;
     for (const auto& group : groups)
     {
@@ -89,27 +66,13 @@ OrientedPoints voxelDownsample(const OrientedPoints& dense, double leaf, int min
 
 namespace
 {
-Eigen::Vector3f planeNormal(const Eigen::Vector3f& point, const Eigen::Vector3f& given, const OrientedPoints& support,
-                            const std::vector<int>& neighbours, float min_cosine)
+Eigen::Vector3f planeNormal(const PlaneMoments& moments, const Eigen::Vector3f& given)
 {
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f moments = Eigen::Matrix3f::Zero();
-  std::size_t count = 0;
-  for (const int n : neighbours)
-  {
-    const auto k = static_cast<std::size_t>(n);
-    if (support.normals[k].dot(given) < min_cosine)
-      continue;
-    const Eigen::Vector3f d = support.points[k] - point;
-    mean += d;
-    moments += d * d.transpose();
-    ++count;
-  }
-  if (count < MIN_PLANE_POINTS)
+  if (moments.count < MIN_PLANE_POINTS)
     return given;
-  mean /= static_cast<float>(count);
-  const Eigen::Matrix3f covariance = moments / static_cast<float>(count) - mean * mean.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance.cast<double>());
+  const Eigen::Vector3d mean = moments.sum / moments.count;
+  const Eigen::Matrix3d covariance = moments.products / moments.count - mean * mean.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
   const Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>().normalized();
   return normal.dot(given) < 0 ? Eigen::Vector3f(-normal) : normal;
 }
@@ -118,16 +81,13 @@ Eigen::Vector3f planeNormal(const Eigen::Vector3f& point, const Eigen::Vector3f&
 std::vector<Eigen::Vector3f> estimateNormals(const OrientedPoints& queries, const OrientedPoints& support,
                                              double radius, double max_normal_angle, const Executor& executor)
 {
-  const KdTree tree(support.points);
+  const TiledPoints tiled(support, static_cast<float>(radius));
   const auto min_cosine = static_cast<float>(std::cos(max_normal_angle));
   std::vector<Eigen::Vector3f> normals(queries.size());
-  executor.forEach((queries.size() + BLOCK - 1) / BLOCK, [&](std::size_t block) {
-    std::vector<int> neighbours;
-    for (std::size_t i = block * BLOCK; i < std::min(queries.size(), (block + 1) * BLOCK); ++i)
-    {
-      tree.radiusSearch(queries.points[i], static_cast<float>(radius), neighbours);
-      normals[i] = planeNormal(queries.points[i], queries.normals[i], support, neighbours, min_cosine);
-    }
+  executor.forEachBundle(queries.size(), BUNDLE, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      normals[i] =
+          planeNormal(tiled.planeMoments(queries.points[i], queries.normals[i], min_cosine), queries.normals[i]);
   });
   return normals;
 }
