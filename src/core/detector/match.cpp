@@ -31,7 +31,7 @@ std::vector<int> inBox(const OrientedPoints& scene, const TrainedModel& model, c
 /// Evenly as many as refinement needs of what lies around the part.
 MeasuredPart pointsNear(const OrientedPoints& scene, const TrainedModel& model, const Pose& T_camera_object)
 {
-  constexpr std::size_t ICP_POINTS = 1500;
+  constexpr std::size_t ICP_POINTS = 600;
   const std::vector<int> inside = inBox(scene, model, T_camera_object, static_cast<double>(model.field.band()));
   const std::size_t step = std::max<std::size_t>(1, inside.size() / ICP_POINTS);
   std::vector<int> chosen;
