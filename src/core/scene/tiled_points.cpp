@@ -54,8 +54,7 @@ BIN_PICKING_SIMD void addMoments(const Planes& planes, std::size_t begin, std::s
       const float dy = planes.y[i] - q.y;
       const float dz = planes.z[i] - q.z;
       const float cosine = planes.nx[i] * q.nx + planes.ny[i] * q.ny + planes.nz[i] * q.nz;
-      const bool counts =
-          (i < end) & (dx * dx + dy * dy + dz * dz < q.squared_radius) & (cosine >= q.min_cosine);
+      const bool counts = (i < end) & (dx * dx + dy * dy + dz * dz < q.squared_radius) & (cosine >= q.min_cosine);
       const float w = counts ? 1.0f : 0.0f;
       const float x = w * dx;
       const float y = w * dy;
