@@ -8,7 +8,6 @@
 namespace bin_picking
 {
 class Executor;
-class KdTree;
 
 /// How a dense surface becomes the points that are matched; the same for models and for whole scans, because features
 /// agree only between surfaces that were treated alike.

@@ -68,7 +68,7 @@ Pose fitAmidErrors(const Pose& T_camera_object, const PreparedScene& scene, cons
   return fitBesideSmoothErrors(model, surface, T_camera_object, spacing, icp);
 }
 
-/// The other half, with all points and a narrow gate.
+/// The other half, with all points and a narrow gate, and then the fit.
 Pose polish(const Pose& T_camera_object, const PreparedScene& scene, const TrainedModel& model, IcpParameters icp)
 {
   if (icp.method != IcpMethod::DistanceField)
