@@ -37,11 +37,11 @@ enum Sum : std::size_t
   X2Y2,
   XY3,
   Y4,
-  Z_X2,
-  Z_XY,
-  Z_Y2,
-  Z_X,
-  Z_Y,
+  ZX2,
+  ZXY,
+  ZY2,
+  ZX,
+  ZY,
   Z
 };
 
@@ -86,11 +86,11 @@ BIN_PICKING_SIMD void sumMoments(const Neighbourhood& found, const float* given_
       sums[X2Y2][l] += xx * yy;
       sums[XY3][l] += xy * yy;
       sums[Y4][l] += yy * yy;
-      sums[Z_X2][l] += z * xx;
-      sums[Z_XY][l] += z * xy;
-      sums[Z_Y2][l] += z * yy;
-      sums[Z_X][l] += z * x;
-      sums[Z_Y][l] += z * y;
+      sums[ZX2][l] += z * xx;
+      sums[ZXY][l] += z * xy;
+      sums[ZY2][l] += z * yy;
+      sums[ZX][l] += z * x;
+      sums[ZY][l] += z * y;
       sums[Z][l] += z;
     }
   for (std::size_t half = LANES / 2; half > 0; half /= 2)
@@ -136,7 +136,7 @@ double QuadricMoments::meanCurvature() const
                             {s[X3], s[X2Y], s[XY2], s[X2]},
                             {s[X2Y], s[XY2], s[Y3], s[XY], s[Y2]},
                             {s[X2], s[XY], s[Y2], s[X], s[Y], s[N]}};
-  double q[ORDER] = {s[Z_X2], s[Z_XY], s[Z_Y2], s[Z_X], s[Z_Y], s[Z]};
+  double q[ORDER] = {s[ZX2], s[ZXY], s[ZY2], s[ZX], s[ZY], s[Z]};
   if (!solve(m, q, MIN_PIVOT * count()))
     return std::numeric_limits<double>::quiet_NaN();
   return quadricCurvature(q[0], q[1], q[2], q[3], q[4]).mean;

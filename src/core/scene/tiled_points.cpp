@@ -24,9 +24,9 @@ enum Sum : std::size_t
   XZ,
   YY,
   YZ,
-  ZZ,
-  NUM_SUMS
+  ZZ
 };
+constexpr std::size_t NUM_SUMS = ZZ + 1;
 using LaneSums = std::array<std::array<float, LANES>, NUM_SUMS>;
 
 /// Coordinates of points and normals in the order of the tiles.
@@ -136,7 +136,9 @@ std::size_t TiledPoints::gather(std::size_t begin, std::size_t end, const Eigen:
     found.ny[size] = other.y();
     found.nz[size] = other.z();
     found.weight[size] = 1;
-    size += (offset.squaredNorm() < radius_ * radius_) & (other.dot(normal) >= min_cosine) ? 1 : 0;
+    const bool is_near = offset.squaredNorm() < radius_ * radius_;
+    const bool faces_alike = other.dot(normal) >= min_cosine;
+    size += static_cast<std::size_t>(is_near) & static_cast<std::size_t>(faces_alike);
   }
   found.size = size;
   return begin;
