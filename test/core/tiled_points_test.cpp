@@ -109,11 +109,23 @@ TEST(VoxelOrder, PointsOfAVoxelAreSideBySideInTheirOwnOrder)
   }
 }
 
-TEST(VoxelOrder, APointKilometresAwayIsNamed)
+TEST(VoxelOrder, AStrayPointFarAwayDisturbsNothing)
+{
+  const std::vector<Eigen::Vector3f> points = {{0, 9000, 0}, {0.010f, 0, 0}, {0.001f, 0, 0}, {0.011f, 0, 0}};
+  const std::vector<VoxelMember> order = voxelOrder(points, 0.003);
+  ASSERT_EQ(order.size(), 4u);
+  EXPECT_EQ(order[0].point, 2u);
+  EXPECT_EQ(order[1].point, 1u);
+  EXPECT_EQ(order[2].point, 3u);
+  EXPECT_EQ(order[3].point, 0u);
+  EXPECT_EQ(order[1].voxel, order[2].voxel);
+}
+
+TEST(VoxelOrder, APointThatNoNumberReachesIsNamed)
 {
   try
   {
-    voxelOrder({Eigen::Vector3f::Zero(), Eigen::Vector3f(0, 9000, 0)}, 0.003);
+    voxelOrder({Eigen::Vector3f::Zero(), Eigen::Vector3f(0, 9e8f, 0)}, 0.003);
     FAIL() << "nothing was said";
   }
   catch (const ParameterError& error)

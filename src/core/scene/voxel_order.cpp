@@ -14,14 +14,15 @@ namespace
 {
 constexpr int DIGIT_BITS = 11;
 constexpr std::size_t DIGITS = std::size_t{1} << DIGIT_BITS;
-constexpr float MAX_VOXELS_PER_SIDE = 2097152;  // three such numbers fit in 63 bits
+constexpr float MAX_VOXELS_PER_SIDE = 4294967040;  // the largest float below 2^32
 
-/// One pass of a radix sort: stable, by one digit.
-void sortByDigit(const std::vector<VoxelMember>& from, int shift, std::vector<VoxelMember>& to)
+/// One pass of a radix sort: stable, by one digit of the place along one axis.
+void sortByDigit(const std::vector<VoxelMember>& from, std::size_t axis, int shift, std::vector<VoxelMember>& to)
 {
+  const auto digit = [&](const VoxelMember& member) { return (member.voxel[axis] >> shift) % DIGITS; };
   std::array<std::uint32_t, DIGITS> next{};
   for (const VoxelMember& member : from)
-    ++next[(member.voxel >> shift) % DIGITS];
+    ++next[digit(member)];
   std::uint32_t begin = 0;
   for (std::uint32_t& count : next)
   {
@@ -30,7 +31,7 @@ void sortByDigit(const std::vector<VoxelMember>& from, int shift, std::vector<Vo
     begin = end;
   }
   for (const VoxelMember& member : from)
-    to[next[(member.voxel >> shift) % DIGITS]++] = member;
+    to[next[digit(member)]++] = member;
 }
 }  // namespace
 
@@ -51,23 +52,24 @@ std::vector<VoxelMember> voxelOrder(const std::vector<Eigen::Vector3f>& points, 
   if (!(voxels.maxCoeff() <= MAX_VOXELS_PER_SIDE))
     throw ParameterError("the points reach over " + std::to_string(static_cast<double>(voxels.maxCoeff()) * leaf) +
                          " m, which at a leaf of " + std::to_string(leaf) +
-                         " m is more than two million voxels; remove stray points or take a larger leaf");
-  const auto columns = static_cast<std::uint64_t>(voxels.x());
-  const auto rows = static_cast<std::uint64_t>(voxels.y());
+                         " m is more than four thousand million voxels; remove stray points or take a larger leaf");
   std::vector<VoxelMember> order(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     const Eigen::Array3f cell = (points[i] * scale).array().floor() - low;
-    order[i] = {(static_cast<std::uint64_t>(cell.z()) * rows + static_cast<std::uint64_t>(cell.y())) * columns +
-                    static_cast<std::uint64_t>(cell.x()),
+    order[i] = {{static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
+                 static_cast<std::uint32_t>(cell.z())},
                 static_cast<std::uint32_t>(i)};
   }
-  const std::uint64_t last = columns * rows * static_cast<std::uint64_t>(voxels.z()) - 1;
   std::vector<VoxelMember> sorted(points.size());
-  for (int shift = 0; shift < 64 && last >> shift > 0; shift += DIGIT_BITS)
+  for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    sortByDigit(order, shift, sorted);
-    order.swap(sorted);
+    const auto last = static_cast<std::uint64_t>(voxels[static_cast<Eigen::Index>(axis)] - 1);
+    for (int shift = 0; last >> shift > 0; shift += DIGIT_BITS)
+    {
+      sortByDigit(order, axis, shift, sorted);
+      order.swap(sorted);
+    }
   }
   return order;
 }
