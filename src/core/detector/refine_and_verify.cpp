@@ -59,16 +59,22 @@ struct Place
   Eigen::Vector3d center;
 };
 
-/// The same place and the same turn, modulo the part's symmetry and turns that are slight: which of these it is, the
-/// rivals tell. Of poses that other near symmetries lead to, the one that ranks first need not end at the right turn.
+/// Near symmetries that two poses may differ by.
+enum class Turns
+{
+  Slight,
+  All
+};
+
+/// The same place and the same turn, modulo the part's symmetry and some of its near symmetries.
 class SamePlace
 {
 public:
-  explicit SamePlace(const TrainedModel& model) : model_(model), near_enough_(SAME_DISTANCE * model.diameter)
+  SamePlace(const TrainedModel& model, Turns turns) : model_(model), near_enough_(SAME_DISTANCE * model.diameter)
   {
     add(Pose::Identity());
     for (const NearSymmetry& near : model.near_symmetries)
-      if (near.slight)
+      if (near.slight || turns == Turns::All)
         add(near.T_object_object);
   }
 
@@ -103,7 +109,7 @@ private:
   const TrainedModel& model_;
   double near_enough_;
   double reach_ = 0;          ///< of the centres of what may be the same place
-  std::vector<Place> turns_;  ///< none and the slight ones, in the part's frame
+  std::vector<Place> turns_;  ///< none and others, in the part's frame
 };
 
 /// All poses, most promising first, each place once.
@@ -125,7 +131,9 @@ std::vector<Ranked> rankPoses(const std::vector<Hypothetical>& poses, const Prep
     ranked[i] = lookAt(poses[i], scene, model, facing, parameters, comparison_cell);
   });
   std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
-  const SamePlace same_place(model);
+  // Which of slight turns it is, the rivals tell. Of poses that other near symmetries lead to, the one that ranks first
+  // need not end at the right turn.
+  const SamePlace same_place(model, Turns::Slight);
   std::vector<Place> places;
   std::vector<Ranked> distinct;
   for (Ranked& candidate : ranked)
@@ -139,29 +147,80 @@ std::vector<Ranked> rankPoses(const std::vector<Hypothetical>& poses, const Prep
   return distinct;
 }
 
-/// Whether refinement has led there already, wherever it started: it would lead there again.
-bool isAssessed(const Place& place, const std::vector<Assessed>& assessed, const SamePlace& same_place)
+/// Deals out ranked poses, some at a time. The size of a round does not depend on the number of threads, so neither do
+/// the results.
+class Rounds
 {
-  return std::any_of(assessed.begin(), assessed.end(), [&](const Assessed& other) {
-    return same_place(same_place.of(other.detection.T_camera_object), place);
-  });
-}
+public:
+  Rounds(const std::vector<Ranked>& ranked, const TrainedModel& model)
+      : same_place_(model, Turns::Slight), rivals_(model, Turns::All)
+  {
+    for (const Ranked& pose : ranked)
+      waiting_.push_back({&pose, same_place_.of(pose.pose.T_camera_object)});
+  }
 
-/// The next poses that lie where nothing was accepted yet. \param assessed that nobody needs to be led to again
-/// \param next into `ranked`, moved on
-std::vector<const Ranked*> nextRound(const std::vector<Ranked>& ranked, const std::vector<int>& explained,
-                                     const std::vector<Assessed>& assessed, const SamePlace& same_place,
-                                     std::size_t& next)
-{
-  constexpr std::size_t ROUND = 8;
-  constexpr double EXPLAINED = 0.6;
-  std::vector<const Ranked*> round;
-  for (; next < ranked.size() && round.size() < ROUND; ++next)
-    if (sharedPart(ranked[next].cells, explained) < EXPLAINED &&
-        !isAssessed(same_place.of(ranked[next].pose.T_camera_object), assessed, same_place))
-      round.push_back(&ranked[next]);
-  return round;
-}
+  /// The next of all, whatever was found.
+  std::vector<const Ranked*> next()
+  {
+    const std::size_t size = std::min(ROUND, waiting_.size());
+    std::vector<const Ranked*> round;
+    for (std::size_t i = 0; i < size; ++i)
+      round.push_back(waiting_[i].pose);
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(size));
+    return round;
+  }
+
+  /// The next that lie where nothing was accepted yet and that nobody was led to. Of poses that a near symmetry leads
+  /// to from each other, one: settled among its rivals, it would most likely end where the others would, and they wait
+  /// until that is known. \param explained ascending
+  std::vector<const Ranked*> next(const std::vector<int>& explained, const std::vector<Assessed>& assessed)
+  {
+    constexpr double EXPLAINED = 0.6;
+    const std::vector<Place> ends = endsOf(assessed);
+    std::vector<const Ranked*> round;
+    std::vector<Place> places;
+    std::vector<Waiting> left;
+    for (const Waiting& one : waiting_)
+    {
+      if (round.size() == ROUND || isAt(one.place, places, rivals_))
+        left.push_back(one);
+      else if (sharedPart(one.pose->cells, explained) < EXPLAINED && !isAt(one.place, ends, same_place_))
+      {
+        round.push_back(one.pose);
+        places.push_back(one.place);
+      }
+    }
+    waiting_ = std::move(left);
+    return round;
+  }
+
+private:
+  static constexpr std::size_t ROUND = 8;
+
+  struct Waiting
+  {
+    const Ranked* pose;
+    Place place;
+  };
+
+  /// Where refinement has led already, wherever it started: it would lead there again.
+  std::vector<Place> endsOf(const std::vector<Assessed>& assessed) const
+  {
+    std::vector<Place> ends;
+    for (const Assessed& one : assessed)
+      ends.push_back(same_place_.of(one.detection.T_camera_object));
+    return ends;
+  }
+
+  static bool isAt(const Place& place, const std::vector<Place>& others, const SamePlace& same)
+  {
+    return std::any_of(others.begin(), others.end(), [&](const Place& other) { return same(other, place); });
+  }
+
+  SamePlace same_place_;
+  SamePlace rivals_;
+  std::vector<Waiting> waiting_;  ///< most promising first
+};
 }  // namespace
 
 int comparisonCell(const PointView& raw, const std::vector<std::shared_ptr<const TrainedModel>>& models)
@@ -179,24 +238,22 @@ std::vector<Assessed> refineAndVerify(const std::vector<Hypothetical>& poses, co
                                       StageClock& clock, bool& partial)
 {
   const VerificationParameters& verification = parameters.verification;
-  // Rounds: what one round has found needs no other explanation in the next. Their size does not depend on the number
-  // of threads, so neither do the results.
   const std::vector<Ranked> ranked = rankPoses(poses, scene, model, parameters, comparison_cell, executor);
   clock.lap("ranking");
-  const SamePlace same_place(model);
+  Rounds rounds(ranked, model);
   std::vector<Assessed> ready;
-  const std::vector<Assessed> none;
-  const std::vector<Assessed>& known = verification.enabled ? ready : none;  // the paper refines every candidate
   std::vector<int> explained;
-  std::size_t next = 0;
   int fruitless = 0;
   const std::size_t limit = verification.enabled ? static_cast<std::size_t>(verification.max_refined) : ranked.size();
-  while (next < ranked.size() && ready.size() < limit && fruitless < verification.fruitless_rounds)
+  while (ready.size() < limit && fruitless < verification.fruitless_rounds)
   {
-    const std::vector<const Ranked*> round = nextRound(ranked, explained, known, same_place, next);
+    // The paper refines every candidate.
+    const std::vector<const Ranked*> round = verification.enabled ? rounds.next(explained, ready) : rounds.next();
+    if (round.empty())
+      break;
     if (deadline.passed())
     {
-      partial = partial || !round.empty();
+      partial = true;
       break;
     }
     std::vector<Assessed> assessed(round.size());
