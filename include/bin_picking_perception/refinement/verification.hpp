@@ -35,7 +35,7 @@ struct VerificationParameters
   double max_bin_penetration = 0.006;
   double overlap = 0.35;
   int max_refined = 96;
-  int fruitless_rounds = 2;
+  int fruitless_rounds = 3;
 
   void visit(ParameterVisitor& v);
 };
