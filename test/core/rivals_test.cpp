@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <random>
 
 #include "bin_picking_perception/model/depth_renderer.hpp"
 #include "bin_picking_perception/model/slight_turn.hpp"
@@ -58,6 +60,50 @@ TEST(DistanceField, MeasuresASphereInsideAndOutside)
       EXPECT_NEAR(field.at((r * direction.normalized()).cast<float>()), r - radius, cell / 8) << r;
   EXPECT_FLOAT_EQ(field.at(Eigen::Vector3f(0.5f, 0, 0)), static_cast<float>(band));
   EXPECT_NEAR(std::abs(field.at(Eigen::Vector3f::Zero())), band, 1e-7);
+}
+
+TEST(DistanceField, ABlockOfPlacesGivesWhatEachGives)
+{
+  const double radius = 0.02;
+  const double band = 0.005;
+  const DistanceField field(sphere(radius), 0.001, band);
+  DistanceField::Places places;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> coordinate(-0.03f, 0.03f);  // also outside of the grid
+  for (std::size_t k = 0; k < DistanceField::BLOCK; ++k)
+  {
+    places.x[k] = coordinate(random);
+    places.y[k] = coordinate(random);
+    places.z[k] = coordinate(random);
+  }
+  places.y[3] = std::numeric_limits<float>::quiet_NaN();
+  places.z[7] = std::numeric_limits<float>::infinity();
+  DistanceField::Numbers distances;
+  field.at(places, distances);
+  DistanceField::Samples samples;
+  field.sample(places, samples);
+  for (std::size_t k = 0; k < DistanceField::BLOCK; ++k)
+  {
+    const bool finite = k != 3 && k != 7;
+    const Eigen::Vector3f place(places.x[k], places.y[k], places.z[k]);
+    const DistanceField::Sample one =
+        finite ? field.sample(place) : DistanceField::Sample{static_cast<float>(band), {0, 0, 0}};
+    EXPECT_NEAR(distances[k], one.distance, 1e-9) << k;  // rounding
+    EXPECT_NEAR(samples.distance[k], one.distance, 1e-9) << k;
+    const Eigen::Vector3f gradient(samples.gradient_x[k], samples.gradient_y[k], samples.gradient_z[k]);
+    EXPECT_NEAR((gradient - one.gradient).norm(), 0, 1e-6) << k;
+  }
+}
+
+TEST(DistanceField, WithoutASurfaceEveryPlaceIsABandAway)
+{
+  const DistanceField field;
+  DistanceField::Numbers distances;
+  field.at({}, distances);
+  EXPECT_TRUE(std::all_of(distances.begin(), distances.end(), [&](float d) { return d == field.band(); }));
+  DistanceField::Samples samples;
+  field.sample({}, samples);
+  EXPECT_EQ(samples.gradient_z[5], 0);
 }
 
 TEST(NearSymmetry, AShaftIsNearlyABodyOfRevolutionAboutItsAxisAlone)

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "bin_picking_perception/refinement/rivals.hpp"
+#include "moved_points.hpp"
 #include "pixel_window.hpp"
 
 namespace bin_picking
@@ -139,22 +140,28 @@ double Contradiction::cost(float distance) const
 void Contradiction::addOffSurface(std::size_t begin, std::size_t end, std::vector<Turn>& turns,
                                   std::vector<Eigen::Vector3f>& concerned) const
 {
-  std::vector<double> costs(turns.size());
-  for (std::size_t i = begin; i < end; ++i)
+  std::vector<DistanceField::Numbers> distances(turns.size());
+  for (; begin < end; begin += DistanceField::BLOCK)
   {
-    const Eigen::Vector3f& p = points_[i];
-    float nearest = model_.field.band();
+    const std::size_t count = std::min(DistanceField::BLOCK, end - begin);
+    DistanceField::Numbers nearest;
+    nearest.fill(model_.field.band());
     for (std::size_t k = 0; k < turns.size(); ++k)
     {
-      const float distance = model_.field.at(turns[k].T_turned_object * p);
-      nearest = std::min(nearest, std::abs(distance));
-      costs[k] = cost(distance);
+      DistanceField::Places places;
+      movePoints(points_[begin].data(), count, Motion(turns[k].T_turned_object), places);
+      model_.field.at(places, distances[k]);
+      for (std::size_t i = 0; i < nearest.size(); ++i)
+        nearest[i] = std::min(nearest[i], std::abs(distances[k][i]));
     }
-    if (nearest >= NEAR * model_.field.band())
-      continue;
-    concerned.push_back(p);
-    for (std::size_t k = 0; k < turns.size(); ++k)
-      turns[k].off_surface += 0.5 * area_per_point_ * costs[k];
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      if (nearest[i] >= NEAR * model_.field.band())
+        continue;
+      concerned.push_back(points_[begin + i]);
+      for (std::size_t k = 0; k < turns.size(); ++k)
+        turns[k].off_surface += 0.5 * area_per_point_ * cost(distances[k][i]);
+    }
   }
 }
 

@@ -4,9 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
-#include "../common/simd.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
 #include "bin_picking_perception/refinement/icp.hpp"
 
@@ -23,6 +24,16 @@ struct FieldRow
   Eigen::Vector3f gradient;  ///< of the distance
   float residual = 0;        ///< metres
   float weight = 0;          ///< 0: says nothing
+};
+
+/// Many rows at once: of each its derivatives by rotation and translation, and the residual.
+struct FieldRowBlock
+{
+  static constexpr std::size_t SIZE = DistanceField::BLOCK;
+  static constexpr std::size_t COLUMNS = 7;
+
+  std::array<DistanceField::Numbers, COLUMNS> columns;
+  DistanceField::Numbers weight;  ///< 0: says nothing
 };
 
 /// Makes the rows of a pose. In the part's frame, so that the field is read without turning its gradient back.
@@ -42,17 +53,8 @@ public:
 
   static double radius(const TrainedModel& model) { return model.size.norm() / 2; }
 
-  /// A measured surface point has no distance from the surface.
-  BIN_PICKING_INLINE FieldRow ofSurface(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const
-  {
-    const Eigen::Vector3f p = T_object_camera_ * point;
-    const DistanceField::Sample sample = field_.sample(p);
-    FieldRow row{(p - middle_) * inverse_radius_, sample.gradient, sample.distance, biweight(sample.distance, gate_)};
-    if (row.weight > 0 &&
-        (T_object_camera_.linear() * normal).dot(sample.gradient) <= min_cosine_ * sample.gradient.norm())
-      row.weight = 0;
-    return row;
-  }
+  /// A measured surface point has no distance from the surface. \param first of at most SIZE points
+  void ofSurface(const OrientedPoints& surface, std::size_t first, FieldRowBlock& rows) const;
 
   /// A step outside of a measured edge the distance is the step.
   FieldRow ofEdge(const Eigen::Vector3f& point, const Eigen::Vector3f& out) const
@@ -89,6 +91,30 @@ private:
   float gate_;
   float min_cosine_;
   float edge_step_;
+};
+
+/// Sums of the weighted products of rows' columns.
+class RowSums
+{
+public:
+  void add(const FieldRowBlock& rows);
+  void add(const FieldRow& row);
+
+  int count() const { return count_; }  ///< of rows that say something
+  double weight() const { return total(PAIRS); }
+  /// \pre i <= j
+  double product(std::size_t i, std::size_t j) const { return total(index(i, j)); }
+
+  static constexpr std::size_t LANES = 16;
+  static constexpr std::size_t COLUMNS = FieldRowBlock::COLUMNS;
+  static constexpr std::size_t PAIRS = COLUMNS * (COLUMNS + 1) / 2;
+
+private:
+  static std::size_t index(std::size_t i, std::size_t j) { return i * COLUMNS - i * (i + 1) / 2 + j; }
+  double total(std::size_t k) const;
+
+  std::array<std::array<double, LANES>, PAIRS + 1> sums_ = {};  ///< the last: of the weights
+  int count_ = 0;
 };
 
 /// The pose moved by a solution of the rows. \param x rotation times the part's radius, then translation

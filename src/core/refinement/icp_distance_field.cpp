@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "../common/simd.hpp"
 #include "field_rows.hpp"
 
 namespace bin_picking
@@ -19,54 +18,26 @@ struct NormalEquations
   Vector6d b;
 };
 
-/// Sums over the rows of the normal equations, in the precision of the data: some hundred rows of like size. A row is
-/// the derivatives by the six unknowns and the residual; an eighth number fills the vector register.
-class RowSums
+NormalEquations equations(const RowSums& sums)
 {
-public:
-  void add(const FieldRow& row)
+  NormalEquations result;
+  for (std::size_t i = 0; i < 6; ++i)
   {
-    const Eigen::Vector3f turn = row.lever.cross(row.gradient);
-    const Eigen::Vector3f& push = row.gradient;
-    const float numbers[8] = {turn.x(), turn.y(), turn.z(), push.x(), push.y(), push.z(), row.residual, 0};
-    for (int i = 0; i < 7; ++i)
-      for (int j = 0; j < 8; ++j)
-        products_[i][j] += row.weight * numbers[i] * numbers[j];
-    weight_ += row.weight;
-    ++count_;
+    for (std::size_t j = 0; j < 6; ++j)
+      result.A(static_cast<int>(i), static_cast<int>(j)) = sums.product(std::min(i, j), std::max(i, j));
+    result.b[static_cast<int>(i)] = -sums.product(i, 6);
   }
+  return result;
+}
 
-  int count() const { return count_; }
-  double rms() const { return std::sqrt(static_cast<double>(products_[6][6] / weight_)); }
-
-  NormalEquations equations() const
-  {
-    NormalEquations result;
-    for (int i = 0; i < 6; ++i)
-    {
-      for (int j = 0; j < 6; ++j)
-        result.A(i, j) = static_cast<double>(products_[i][j]);
-      result.b[i] = -static_cast<double>(products_[i][6]);
-    }
-    return result;
-  }
-
-private:
-  float products_[7][8] = {};
-  float weight_ = 0;
-  int count_ = 0;
-};
-
-BIN_PICKING_SIMD void addSurface(const FieldRows& rows, const OrientedPoints& measured, RowSums& result)
+void addSurface(const FieldRows& rows, const OrientedPoints& measured, RowSums& sums)
 {
-  RowSums sums = result;  // of its own, which no measured point can alias: it stays in registers
-  for (std::size_t i = 0; i < measured.size(); ++i)
+  FieldRowBlock block;
+  for (std::size_t first = 0; first < measured.size(); first += FieldRowBlock::SIZE)
   {
-    const FieldRow row = rows.ofSurface(measured.points[i], measured.normals[i]);
-    if (row.weight > 0)
-      sums.add(row);
+    rows.ofSurface(measured, first, block);
+    sums.add(block);
   }
-  result = sums;
 }
 
 void addEdges(const FieldRows& rows, const OrientedPoints& edges, RowSums& sums)
@@ -114,9 +85,9 @@ IcpResult icpDistanceField(const TrainedModel& model, const MeasuredPart& measur
     result.correspondences = sums.count();
     if (result.correspondences < MIN_PAIRS)
       break;
-    result.rms = sums.rms();
+    result.rms = std::sqrt(sums.product(6, 6) / sums.weight());
     addEdges(rows, measured.edges, sums);
-    const Vector6d x = solveObservable(sums.equations());
+    const Vector6d x = solveObservable(equations(sums));
     T_object_camera = movedBy(x, T_object_camera, model);
     result.T_camera_object = T_object_camera.inverse();
     result.converged = gate_is_closed && x.head<3>().norm() + x.tail<3>().norm() < parameters.convergence;

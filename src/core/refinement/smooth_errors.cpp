@@ -134,9 +134,14 @@ public:
       for (std::size_t k = 0; k < COLUMNS; ++k)
         coupling[k] += share * row[k];
     }
-    for (std::size_t i = 0; i < COLUMNS; ++i)
-      for (std::size_t j = 0; j < COLUMNS; ++j)
-        pose_[i][j] += weight * row[i] * row[j];
+  }
+
+  /// Of all points, whatever their nodes.
+  void add(const RowSums& sums)
+  {
+    for (std::size_t i = 0; i < RowSums::COLUMNS; ++i)
+      for (std::size_t j = 0; j < RowSums::COLUMNS; ++j)
+        pose_[i][j] += sums.product(std::min(i, j), std::max(i, j));
   }
 
   /// The most likely step of the pose, whatever the node values.
@@ -166,22 +171,34 @@ private:
   std::array<Numbers, COLUMNS> pose_ = {};
 };
 
-Numbers numbersOf(const FieldRow& row)
+Numbers numbersOf(const FieldRowBlock& rows, std::size_t k)
 {
-  const Eigen::Vector3d turn = row.lever.cross(row.gradient).cast<double>();
-  const Eigen::Vector3d push = row.gradient.cast<double>();
-  return {turn.x(), turn.y(), turn.z(), push.x(), push.y(), push.z(), static_cast<double>(row.residual), 0};
+  Numbers numbers = {};
+  for (std::size_t i = 0; i < FieldRowBlock::COLUMNS; ++i)
+    numbers[i] = static_cast<double>(rows.columns[i][k]);
+  return numbers;
 }
 
-BIN_PICKING_SIMD void addPoints(const FieldRows& rows, const OrientedPoints& surface, const NodeGrid& grid,
-                                NodeEquations& equations)
+/// \param points of the block
+BIN_PICKING_SIMD void addBlock(const FieldRowBlock& rows, const Eigen::Vector3f* points, const NodeGrid& grid,
+                               NodeEquations& equations)
 {
-  for (std::size_t i = 0; i < surface.size(); ++i)
+  for (std::size_t k = 0; k < FieldRowBlock::SIZE; ++k)
+    if (rows.weight[k] > 0)
+      equations.add(grid.at(points[k]), numbersOf(rows, k), static_cast<double>(rows.weight[k]));
+}
+
+void addPoints(const FieldRows& rows, const OrientedPoints& surface, const NodeGrid& grid, NodeEquations& equations)
+{
+  FieldRowBlock block;
+  RowSums sums;
+  for (std::size_t first = 0; first < surface.size(); first += FieldRowBlock::SIZE)
   {
-    const FieldRow row = rows.ofSurface(surface.points[i], surface.normals[i]);
-    if (row.weight > 0)
-      equations.add(grid.at(surface.points[i]), numbersOf(row), static_cast<double>(row.weight));
+    rows.ofSurface(surface, first, block);
+    addBlock(block, &surface.points[first], grid, equations);
+    sums.add(block);
   }
+  equations.add(sums);
 }
 }  // namespace
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "../common/simd.hpp"
 #include "bin_picking_perception/refinement/verification.hpp"
+#include "moved_points.hpp"
 
 namespace bin_picking
 {
@@ -19,18 +22,42 @@ struct Facing
   float towards;  ///< part of the vector to the camera along the normal
 };
 
-std::vector<Facing> pointsFacing(const TrainedModel& model, const Eigen::Isometry3f& T_camera_object)
+/// Parts of the vectors to the camera along the normals.
+/// \param points, normals coordinates, one after the other, of `count` \param camera where it is, part frame
+BIN_PICKING_SIMD void towardsCamera(const float* points, const float* normals, std::size_t count,
+                                    const std::array<float, 3>& camera, DistanceField::Numbers& along)
 {
-  std::vector<Facing> points;
-  points.reserve(model.surface.size() / 2);
-  for (std::size_t i = 0; i < model.surface.size(); ++i)
+  const std::array<float, 3> c = camera;
+  for (std::size_t k = 0; k < count; ++k)
+    along[k] = normals[3 * k] * (c[0] - points[3 * k]) + normals[3 * k + 1] * (c[1] - points[3 * k + 1]) +
+               normals[3 * k + 2] * (c[2] - points[3 * k + 2]);
+}
+
+std::vector<Facing> pointsFacing(const OrientedPoints& surface, const Eigen::Isometry3f& T_camera_object)
+{
+  const Motion motion(T_camera_object);
+  const Eigen::Vector3f c = T_camera_object.inverse().translation();
+  std::vector<Facing> facing(surface.size());
+  std::size_t size = 0;
+  DistanceField::Places places;
+  DistanceField::Numbers along;
+  for (std::size_t first = 0; first < surface.size(); first += DistanceField::BLOCK)
   {
-    const Eigen::Vector3f p = T_camera_object * model.surface.points[i];
-    const float towards = -(T_camera_object.linear() * model.surface.normals[i]).dot(p);
-    if (p.z() > 0 && towards > 0)
-      points.push_back({static_cast<std::uint32_t>(i), p.head<2>() / p.z(), p.z(), towards});
+    const std::size_t count = std::min(DistanceField::BLOCK, surface.size() - first);
+    const float* points = surface.points[first].data();
+    movePoints(points, count, motion, places);
+    towardsCamera(points, surface.normals[first].data(), count, {c.x(), c.y(), c.z()}, along);
+    for (std::size_t k = 0; k < count; ++k)
+    {
+      const float z = places.z[k];
+      // Written in any case, kept if it counts: no branch to be guessed wrong.
+      facing[size] = {static_cast<std::uint32_t>(first + k), Eigen::Vector2f(places.x[k] / z, places.y[k] / z), z,
+                      along[k]};
+      size += static_cast<std::size_t>((z > 0) & (along[k] > 0));
+    }
   }
-  return points;
+  facing.resize(size);
+  return facing;
 }
 
 /// Nearest depth per cell of the image plane.
@@ -83,7 +110,7 @@ float slopeOf(const Facing& point)
 
 SurfaceIndices visiblePoints(const TrainedModel& model, const Pose& T_camera_object)
 {
-  const std::vector<Facing> points = pointsFacing(model, T_camera_object.cast<float>());
+  const std::vector<Facing> points = pointsFacing(model.surface, T_camera_object.cast<float>());
   if (points.empty())
     return {};
   // Cells wide enough that a closed surface leaves none empty.
