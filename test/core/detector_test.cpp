@@ -101,6 +101,22 @@ TEST(Detector, whatAGlanceAtTheClustersContradictsLeastIsRight)
       std::any_of(truth.begin(), truth.end(), [&](const Pose& T) { return indexOf(result.detections, T) == 0; }));
 }
 
+/// Poses of one part that near symmetries lead to from each other end, settled among their rivals, at the same one: it
+/// is refined once, and not once for each of them.
+TEST(Detector, rivalsOfOnePlaceAreNotRefinedToTheSameEnd)
+{
+  for (const std::uint32_t seed : {1u, 2u, 3u})
+  {
+    const auto truth = test::posesApart(4, seed);
+    const DetectionResult result = detector().detect(test::renderTees(truth, SIGMA), {});
+    for (const auto& T : truth)
+    {
+      EXPECT_GE(indexOf(result.detections, T), 0) << "seed " << seed;
+      EXPECT_EQ(indexOf(result.rejected, T), -1) << "seed " << seed << ": refined twice";
+    }
+  }
+}
+
 TEST(Detector, sameBitsForAnyNumberOfThreadsAndTwoRuns)
 {
   const DepthGrid grid = test::renderTees(test::posesApart(4, 5), SIGMA);

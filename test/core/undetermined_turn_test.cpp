@@ -80,9 +80,12 @@ TEST(UndeterminedTurn, WhoAcceptsNoneGetsAnAmbiguousPose)
 
 namespace
 {
+constexpr float HALF_HIDDEN = 0.002f;
+
 /// The run lies across the view; the branch points aside, and where a plate hides half of the tee, it may as well point
 /// away from the camera, where the run hides it.
-DetectionResult detectTee(bool is_branch_hidden)
+/// \param hidden_from beyond this y (metres) a plate hides what there is
+DetectionResult detectTee(float hidden_from)
 {
   Pose truth = Pose::Identity();
   truth.translation().z() = 0.6;
@@ -91,10 +94,9 @@ DetectionResult detectTee(bool is_branch_hidden)
   renderer.draw(floorMesh(), Pose::Identity(), 0);
   renderer.draw(teeModel()->mesh, truth, 1);
   TriangleMesh plate;
-  plate.vertices = {{-0.1f, 0.002f, 0.52f}, {0.1f, 0.002f, 0.52f}, {0.1f, 0.1f, 0.52f}, {-0.1f, 0.1f, 0.52f}};
+  plate.vertices = {{-0.1f, hidden_from, 0.52f}, {0.1f, hidden_from, 0.52f}, {0.1f, 0.1f, 0.52f}, {-0.1f, 0.1f, 0.52f}};
   plate.triangles = {{0, 1, 2}, {0, 2, 3}};
-  if (is_branch_hidden)
-    renderer.draw(plate, Pose::Identity(), 2);
+  renderer.draw(plate, Pose::Identity(), 2);
   Detector::Request request;
   request.bin = wideBin();
   return Detector({teeModel()}, {}).detect(renderer.grid(), request);
@@ -103,7 +105,7 @@ DetectionResult detectTee(bool is_branch_hidden)
 
 TEST(UndeterminedTurn, AHiddenBranchIsMoreThanATurn)
 {
-  const DetectionResult result = detectTee(true);
+  const DetectionResult result = detectTee(HALF_HIDDEN);
   EXPECT_TRUE(result.detections.empty()) << result.message;
   bool ambiguous = false;
   for (const Detection& rejected : result.rejected)
@@ -119,9 +121,9 @@ TEST(UndeterminedTurn, HalfAMarginIsEnoughWhereAllElseIsSure)
   const double margin = VerificationParameters().min_turn_margin;
   int sure = 0;
   int unsure = 0;
-  for (const bool is_hidden : {true, false})
+  for (const float hidden_from : {-0.008f, -0.004f, HALF_HIDDEN, 0.09f})
   {
-    const DetectionResult result = detectTee(is_hidden);
+    const DetectionResult result = detectTee(hidden_from);
     for (const auto* poses : {&result.detections, &result.rejected})
       for (const Detection& detection : *poses)
         for (const Criterion& criterion : detection.criteria)

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "bin_picking_perception/common/oriented_points.hpp"

@@ -130,8 +130,16 @@ BIN_PICKING_SIMD void differentiate(const Cells& cells, const Lattice& lattice, 
 template <typename Finish>
 void DistanceField::inCells(const Places& places, const Finish& finish) const
 {
-  const Lattice lattice = {low_.x(), low_.y(),      low_.z(), limit_.x(), limit_.y(),
-                           limit_.z(), inverse_cell_, step_,  band_,  static_cast<std::int32_t>(columns_),
+  const Lattice lattice = {low_.x(),
+                           low_.y(),
+                           low_.z(),
+                           limit_.x(),
+                           limit_.y(),
+                           limit_.z(),
+                           inverse_cell_,
+                           step_,
+                           band_,
+                           static_cast<std::int32_t>(columns_),
                            static_cast<std::int32_t>(rows_)};
   Cells cells;
   findCells(places, lattice, cells);

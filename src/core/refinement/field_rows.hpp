@@ -53,7 +53,8 @@ public:
 
   static double radius(const TrainedModel& model) { return model.size.norm() / 2; }
 
-  /// A measured surface point has no distance from the surface. \param first of at most SIZE points
+  /// Of the points from `first` on, as many as a block holds: a measured surface point has no distance from the
+  /// surface.
   void ofSurface(const OrientedPoints& surface, std::size_t first, FieldRowBlock& rows) const;
 
   /// A step outside of a measured edge the distance is the step.

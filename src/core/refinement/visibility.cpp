@@ -51,7 +51,7 @@ std::vector<Facing> pointsFacing(const OrientedPoints& surface, const Eigen::Iso
     {
       const float z = places.z[k];
       // Written in any case, kept if it counts: no branch to be guessed wrong.
-      facing[size] = {static_cast<std::uint32_t>(first + k), Eigen::Vector2f(places.x[k] / z, places.y[k] / z), z,
+      facing[size] = {static_cast<std::uint32_t>(first + k), Eigen::Vector2f(places.x[k], places.y[k]) / z, z,
                       along[k]};
       size += static_cast<std::size_t>((z > 0) & (along[k] > 0));
     }
