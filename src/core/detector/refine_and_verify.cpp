@@ -206,9 +206,9 @@ private:
   /// Where refinement has led already, wherever it started: it would lead there again.
   std::vector<Place> endsOf(const std::vector<Assessed>& assessed) const
   {
-    std::vector<Place> ends;
-    for (const Assessed& one : assessed)
-      ends.push_back(same_place_.of(one.detection.T_camera_object));
+    std::vector<Place> ends(assessed.size());
+    std::transform(assessed.begin(), assessed.end(), ends.begin(),
+                   [this](const Assessed& one) { return same_place_.of(one.detection.T_camera_object); });
     return ends;
   }
 
