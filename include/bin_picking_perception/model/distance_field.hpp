@@ -72,7 +72,7 @@ public:
     return {step_ * mix(bottom, top, f.z()), step_ * inverse_cell_ * slope};
   }
 
-  /// Places that are looked up at once, which is several times faster than one by one.
+  /// Places that are looked up at once, in about half the time of one by one.
   static constexpr std::size_t BLOCK = 64;
   using Numbers = std::array<float, BLOCK>;
   struct Places

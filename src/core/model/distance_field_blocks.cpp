@@ -149,16 +149,20 @@ void DistanceField::inCells(const Places& places, const Finish& finish) const
 
 void DistanceField::at(const Places& places, Numbers& distances) const
 {
-  distances.fill(band_);
-  if (!empty())
+  if (empty())
+    distances.fill(band_);
+  else
     inCells(places, [&](const Cells& cells, const Lattice& lattice) { interpolate(cells, lattice, distances); });
 }
 
 void DistanceField::sample(const Places& places, Samples& samples) const
 {
-  samples = {};
-  samples.distance.fill(band_);
-  if (!empty())
+  if (empty())
+  {
+    samples = {};
+    samples.distance.fill(band_);
+  }
+  else
     inCells(places, [&](const Cells& cells, const Lattice& lattice) { differentiate(cells, lattice, samples); });
 }
 }  // namespace bin_picking

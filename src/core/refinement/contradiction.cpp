@@ -141,6 +141,7 @@ void Contradiction::addOffSurface(std::size_t begin, std::size_t end, std::vecto
                                   std::vector<Eigen::Vector3f>& concerned) const
 {
   std::vector<DistanceField::Numbers> distances(turns.size());
+  DistanceField::Places places;
   for (; begin < end; begin += DistanceField::BLOCK)
   {
     const std::size_t count = std::min(DistanceField::BLOCK, end - begin);
@@ -148,7 +149,6 @@ void Contradiction::addOffSurface(std::size_t begin, std::size_t end, std::vecto
     nearest.fill(model_.field.band());
     for (std::size_t k = 0; k < turns.size(); ++k)
     {
-      DistanceField::Places places;
       movePoints(points_[begin].data(), count, Motion(turns[k].T_turned_object), places);
       model_.field.at(places, distances[k]);
       for (std::size_t i = 0; i < nearest.size(); ++i)

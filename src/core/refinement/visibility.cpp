@@ -37,8 +37,9 @@ std::vector<Facing> pointsFacing(const OrientedPoints& surface, const Eigen::Iso
 {
   const Motion motion(T_camera_object);
   const Eigen::Vector3f c = T_camera_object.inverse().translation();
-  std::vector<Facing> facing(surface.size());
-  std::size_t size = 0;
+  std::vector<Facing> facing;
+  facing.reserve(surface.size() / 2);
+  std::array<Facing, DistanceField::BLOCK> kept;
   DistanceField::Places places;
   DistanceField::Numbers along;
   for (std::size_t first = 0; first < surface.size(); first += DistanceField::BLOCK)
@@ -47,16 +48,16 @@ std::vector<Facing> pointsFacing(const OrientedPoints& surface, const Eigen::Iso
     const float* points = surface.points[first].data();
     movePoints(points, count, motion, places);
     towardsCamera(points, surface.normals[first].data(), count, {c.x(), c.y(), c.z()}, along);
+    std::size_t size = 0;
     for (std::size_t k = 0; k < count; ++k)
     {
       const float z = places.z[k];
       // Written in any case, kept if it counts: no branch to be guessed wrong.
-      facing[size] = {static_cast<std::uint32_t>(first + k), Eigen::Vector2f(places.x[k], places.y[k]) / z, z,
-                      along[k]};
+      kept[size] = {static_cast<std::uint32_t>(first + k), Eigen::Vector2f(places.x[k], places.y[k]) / z, z, along[k]};
       size += static_cast<std::size_t>((z > 0) & (along[k] > 0));
     }
+    facing.insert(facing.end(), kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(size));
   }
-  facing.resize(size);
   return facing;
 }
 
