@@ -7,7 +7,8 @@ source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build_dir=${BUILD_DIR:-build}
 case "$build_dir" in /*) ;; *) build_dir=$source_dir/$build_dir ;; esac
 
-absolute() { case "$1" in /*) echo "$1" ;; *) echo "$start_dir/$1" ;; esac; }
+# Without the slash that a shell's */ leaves behind, for the last name of the path is used.
+absolute() { set -- "${1%/}"; case "$1" in /*) echo "$1" ;; *) echo "$start_dir/$1" ;; esac; }
 
 require_number() {  # OPTION VALUE LOWEST
   case "$2" in ''|*[!0-9]*) fail "$1 is '$2', but it must be a whole number from $3" ;; esac
