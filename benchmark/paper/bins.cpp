@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/evaluation/detection_picture.hpp"
 #include "bin_picking_perception/evaluation/evaluation_dataset.hpp"
 #include "bin_picking_perception/evaluation/scene_judgement.hpp"
@@ -136,8 +137,8 @@ Json runBins(const Json& specification, const std::string&)
   selection.split = specification.value("split", "");
   selection.max_scenes = specification.value("max_scenes", 0);
   EvaluationDataset dataset = openDataset(specification.at("dataset").get<std::string>(), selection);
-  const PartShapes shapes = loadPartShapes(dataset);
   const Executor executor(0);
+  const PartShapes shapes = loadPartShapes(dataset, executor);
   Models models(executor, specification.value("models", ""));
   Json result = {{"models", Json::array()}, {"runs", Json::array()}, {"scenes", dataset.scenes.size()}};
   std::vector<Method> methods;

@@ -8,6 +8,7 @@
 
 #include "arguments.hpp"
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
 #include "child_process.hpp"
 #include "report.hpp"
 #include "terminal.hpp"
@@ -203,11 +204,12 @@ void run(const Arguments& arguments, std::vector<std::string> command)
     lone.parts.push_back({loadPart(folder), static_cast<int>(lone.parts.size()) + 1, 0});
     names.push_back(lone.parts.back().definition.name);
   }
-  study.shapes = loadPartShapes(lone);
+  const Executor executor(0);
+  study.shapes = loadPartShapes(lone, executor);
   EvaluationDataset bins;
   if (arguments.has("--bins"))
     bins = openDataset(arguments.value("--bins"), {"", names, 0});
-  study.bin_shapes = loadPartShapes(bins);
+  study.bin_shapes = loadPartShapes(bins, executor);
 
   Progress progress;
   for (const EvaluationPart& part : lone.parts)

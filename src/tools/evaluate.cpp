@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/detector.hpp"
 #include "bin_picking_perception/evaluation/bop_results.hpp"
 #include "bin_picking_perception/evaluation/evaluation_dataset.hpp"
@@ -175,7 +176,7 @@ EvaluationReport evaluateScenes(const Arguments& arguments, EvaluationDataset& d
   report.details = details(arguments);
   report.parameters = evaluationParameters(arguments);
   Progress progress;
-  const PartShapes shapes = loadPartShapes(dataset);
+  const PartShapes shapes = loadPartShapes(dataset, Executor(detector_parameters.num_threads));
   const Source source = openSource(arguments, dataset, detector_parameters, progress);
   for (std::size_t k = 0; k < dataset.scenes.size(); ++k)
   {

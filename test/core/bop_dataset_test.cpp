@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/evaluation/evaluation_dataset.hpp"
 #include "bin_picking_perception/evaluation/part_shape.hpp"
 #include "core/dataset_folders.hpp"
@@ -73,7 +74,7 @@ TEST(BopDataset, VisibilityIsReadOrMeasured)
   folder.writeDepth("val/000003/depth/000009.png", grid);
   EvaluationDataset dataset = openDataset(folder.path(""), {});
   EXPECT_TRUE(std::isnan(dataset.scenes[0].instances[0].visible_fraction));
-  const PartShapes shapes = loadPartShapes(dataset);
+  const PartShapes shapes = loadPartShapes(dataset, Executor());
   for (EvaluationScene& scene : dataset.scenes)
     estimateVisibility(scene, loadSceneGrid(scene, {}), shapes);
   // u = 300 * 0.01 / 0.6 + 79.5 = 84.5 is the middle of the bar, up to the nearer upper edge's perspective.

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/evaluation/evaluation_dataset.hpp"
+#include "bin_picking_perception/evaluation/part_shape.hpp"
 #include "core/dataset_folders.hpp"
 
 namespace bin_picking
@@ -82,6 +84,19 @@ TEST(OwnDataset, SelectionRestrictsScenesAndParts)
   folder.writeFile("mine/part.yaml", "format: 1\nname: bar\nmesh: {file: ../parts/bar/bar.stl, unit: m}\n");
   const EvaluationDataset mine = openDataset(folder.path("full"), {"", {folder.path("mine")}, 0});
   EXPECT_TRUE(mine.parts[0].definition.symmetry.trivial());
+}
+
+TEST(OwnDataset, PosesAreHeldToTheSymmetryThatTrainingFindsWhereNoneIsStated)
+{
+  const OwnFolder folder;
+  const std::string mesh = "format: 1\nname: bar\nmesh: {file: ../parts/bar/bar.stl, unit: m}\n";
+  folder.writeFile("unsaid/part.yaml", mesh);
+  const auto shapeOf = [&](const std::string& part) {
+    return loadPartShapes(openDataset(folder.path("full"), {"", {folder.path(part)}, 0}), Executor()).at("bar");
+  };
+  EXPECT_EQ(shapeOf("unsaid").symmetry.discrete.size(), 4u) << "half turns about the three axes of a cuboid";
+  folder.writeFile("said/part.yaml", mesh + "symmetry: {discrete: [{axis: [0, 0, 1], order: 2, origin: [0, 0, 0]}]}\n");
+  EXPECT_EQ(shapeOf("said").symmetry.discrete.size(), 2u);
 }
 
 TEST(OwnDataset, DamageIsToldBeforeAnyWork)

@@ -11,6 +11,8 @@
 
 namespace bin_picking
 {
+class Executor;
+
 /// What the poses of a part are compared with.
 struct PartShape
 {
@@ -29,8 +31,9 @@ using PartShapes = std::map<std::string, PartShape>;  ///< by the part's name
 /// \param diameter metres; 0: measured on the mesh. \throws ParameterError the mesh has no triangles
 PartShape makePartShape(const TriangleMesh& mesh, const Symmetry& symmetry, double diameter = 0);
 
-/// The shapes of all parts of a data set. \throws FileError a mesh that cannot be used
-PartShapes loadPartShapes(const EvaluationDataset& dataset);
+/// The shapes of all parts of a data set; a part whose symmetry is not stated has that which training finds.
+/// \throws FileError a mesh that cannot be used
+PartShapes loadPartShapes(const EvaluationDataset& dataset, const Executor& executor);
 
 /// Fills the visible fractions that the data set does not state, from the scan: a pixel of the instance's silhouette is
 /// hidden if something was measured there more than `tolerance` (metres) in front of it; pixels without measurement

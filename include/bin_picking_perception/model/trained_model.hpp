@@ -61,6 +61,11 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
                                               const Executor& executor,
                                               const std::function<void(const std::string&)>& progress = {});
 
+/// The symmetry that training gives the part: the stated one, otherwise what its surface shows at the automatic leaf or
+/// that of the definition. Takes some tenths of a second where it has to look. \throws FileError a mesh that cannot be
+/// used
+Symmetry symmetryOf(const PartDefinition& definition, const Executor& executor);
+
 /// Hash of what a model is asked to be: name, unit, symmetry and every parameter, with the part's own `training:`
 /// values. \throws ParameterError the part's training values are not valid
 std::uint64_t requestHash(const PartDefinition& definition, const TrainingParameters& parameters);

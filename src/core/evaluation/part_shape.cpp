@@ -8,7 +8,9 @@
 
 #include "../model/even_directions.hpp"
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/model/depth_renderer.hpp"
+#include "bin_picking_perception/model/trained_model.hpp"
 
 namespace bin_picking
 {
@@ -84,13 +86,13 @@ PartShape makePartShape(const TriangleMesh& mesh, const Symmetry& symmetry, doub
   return shape;
 }
 
-PartShapes loadPartShapes(const EvaluationDataset& dataset)
+PartShapes loadPartShapes(const EvaluationDataset& dataset, const Executor& executor)
 {
   PartShapes shapes;
   for (const EvaluationPart& part : dataset.parts)
   {
     const TriangleMesh mesh = loadMesh(part.definition.mesh_file, part.definition.mesh_unit);
-    shapes.emplace(part.definition.name, makePartShape(mesh, part.definition.symmetry, part.diameter));
+    shapes.emplace(part.definition.name, makePartShape(mesh, symmetryOf(part.definition, executor), part.diameter));
   }
   return shapes;
 }
