@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "bin_picking_perception/common/parallel.hpp"
+#include "bin_picking_perception/model/near_symmetry.hpp"
 #include "bin_picking_perception/model/symmetry_search.hpp"
 #include "bin_picking_perception/model/trained_model.hpp"
 #include "mesh_shapes.hpp"
@@ -58,6 +59,83 @@ TriangleMesh joined(TriangleMesh a, const TriangleMesh& b)
   for (const auto& t : b.triangles)
     a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   return a;
+}
+
+constexpr int TEETH = 16;  // a tooth every 22.5 degrees
+
+/// A gear about z with teeth 3 mm high.
+TriangleMesh gear()
+{
+  constexpr int SIDES = 4 * TEETH;
+  TriangleMesh mesh = tubeMesh(0.03f, 0, 0.02f, SIDES);
+  for (Eigen::Vector3f& v : mesh.vertices)
+  {
+    const auto side = static_cast<int>(std::lround(std::atan2(v.y(), v.x()) / (2 * M_PI) * SIDES) + SIDES);
+    if (side % 4 >= 2)
+      v.head<2>() *= 0.9f;
+  }
+  return mesh;
+}
+
+/// The gear with a boss beside its axis, which tells its teeth apart.
+TriangleMesh gearWithBoss(double height, const Pose& T)
+{
+  Pose at = Pose::Identity();
+  at.translation() = Vector3d(0.022, 0.004, 0.02 + height / 2);
+  return moved(joined(gear(), moved(test::box(0.008f, 0.008f, static_cast<float>(height)), at)), T);
+}
+
+TEST(SymmetrySearch, AGearHasAsManyTurnsAsTeeth)
+{
+  for (const Pose& T : {Pose::Identity(), askew()})
+  {
+    const SymmetryReport report = search(moved(gear(), T));
+    EXPECT_FALSE(report.symmetry.continuous);
+    EXPECT_EQ(report.symmetry.discrete.size(), 2u * TEETH);
+    expectMember(report, rotationAbout({T.linear() * Vector3d::UnitZ(), T * Vector3d::Zero()}, 2 * M_PI / TEETH));
+  }
+}
+
+TEST(SymmetrySearch, WhatIsAlmostSymmetricTellsTheAxisOfTheRest)
+{
+  for (const Pose& T : {Pose::Identity(), askew()})
+  {
+    const SymmetryReport report = search(gearWithBoss(0.006, T));
+    EXPECT_TRUE(report.symmetry.trivial());
+    ASSERT_FALSE(report.almost.empty());
+    const AxisFinding& almost = report.almost.front();
+    EXPECT_EQ(almost.order, TEETH);
+    // The boss draws the middle of the area 0.5 mm aside.
+    const Vector3d off_axis = (almost.axis.origin - T * Vector3d::Zero()).cross(T.linear() * Vector3d::UnitZ());
+    EXPECT_LT(off_axis.norm(), 1e-4);
+    EXPECT_GT(std::abs(almost.axis.direction.dot(T.linear() * Vector3d::UnitZ())), std::cos(0.002));
+    EXPECT_NEAR(almost.mismatch.deviation, 0.006, TOLERANCE);  // the top of the boss
+    EXPECT_LT(almost.mismatch.share, 0.1);
+  }
+}
+
+TEST(NearSymmetry, AGearWithABossNearlyKeepsTheTurnsOfItsTeeth)
+{
+  const OrientedPoints dense = sampleSurface(gearWithBoss(0.002, askew()), SPACING, 1);
+  const DistanceField field(dense, LEAF / 3, 1.5 * LEAF);
+  std::vector<int> queries;
+  for (std::size_t i = 0; i < dense.size(); i += 16)
+    queries.push_back(static_cast<int>(i));
+  const SelfComparison exact(dense, queries, SPACING, 4 * SPACING);
+  const auto near = findNearSymmetries(dense, field, exact, {}, 0.35 * LEAF, 0.0025);
+  const Symmetry::Axis axis{askew().linear() * Vector3d::UnitZ(), askew() * Vector3d::Zero()};
+  for (int tooth = 1; tooth < TEETH; ++tooth)
+  {
+    const Pose turn = rotationAbout(axis, 2 * M_PI * tooth / TEETH);
+    const auto found = std::find_if(near.begin(), near.end(), [&](const NearSymmetry& one) {
+      return Eigen::AngleAxisd(one.T_object_object.linear().transpose() * turn.linear()).angle() < 0.004;
+    });
+    ASSERT_NE(found, near.end()) << tooth;
+    const Vector3d rim = askew() * Vector3d(0.03, 0, 0.01);
+    EXPECT_LT((found->T_object_object * rim - turn * rim).norm(), 2e-4) << tooth;
+    EXPECT_TRUE(found->slight) << "the boss is 2 mm high";
+    EXPECT_FALSE(found->slight_all_around) << "half a tooth moves the teeth, 3 mm high";
+  }
 }
 
 TEST(SymmetrySearch, ACylinderTurnsAboutItsAxisAndFlips)
@@ -177,8 +255,10 @@ TEST(SymmetrySearch, TrainingUsesWhatItFindsUnlessThePartStatesIt)
   parameters.num_views = 32;
   PartDefinition part = definitionOf(folder, prism(6));
   EXPECT_EQ(trainPart(part, parameters, Executor(2))->symmetry.discrete.size(), 12u);
+  EXPECT_EQ(symmetryOf(part, Executor(2)).discrete.size(), 12u);
   part.symmetry_stated = true;
   EXPECT_TRUE(trainPart(part, parameters, Executor(2))->symmetry.trivial());
+  EXPECT_TRUE(symmetryOf(part, Executor(2)).trivial());
   part.symmetry.discrete = closeUnderComposition({rotationAbout({Vector3d::UnitZ(), Vector3d::Zero()}, M_PI / 2)});
   const auto contradicted = trainPart(part, parameters, Executor(2));
   EXPECT_EQ(contradicted->symmetry.discrete.size(), 4u);

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "even_directions.hpp"
 
@@ -29,9 +30,10 @@ Eigen::Vector3f gradientAt(const DistanceField& field, const Eigen::Vector3f& p,
   return gradient;
 }
 
-/// One damped Gauss-Newton step of sum field(T p)^2 over small motions about `center`.
+/// One damped Gauss-Newton step of sum field(T p)^2 over small motions about `center`; what is off by more than the
+/// gate does not count.
 Pose improved(const std::vector<Eigen::Vector3f>& points, const DistanceField& field, const Pose& T,
-              const Eigen::Vector3d& center)
+              const Eigen::Vector3d& center, float gate)
 {
   constexpr double DAMPING = 1e-4;  // of the mean pivot: a cylinder slides along itself freely
   Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Zero();
@@ -40,7 +42,7 @@ Pose improved(const std::vector<Eigen::Vector3f>& points, const DistanceField& f
   {
     const Eigen::Vector3d p = T * point.cast<double>();
     const float residual = field.at(p.cast<float>());
-    if (std::abs(residual) >= 0.99f * field.band())
+    if (std::abs(residual) >= gate)
       continue;
     const Eigen::Vector3d g = gradientAt(field, p.cast<float>(), 0.1f * field.band()).cast<double>();
     Eigen::Matrix<double, 6, 1> row;
@@ -135,13 +137,16 @@ double meanDistance(const std::vector<Eigen::Vector3f>& points, const DistanceFi
 }
 
 Symmetry::Axis refinedAxis(const std::vector<Eigen::Vector3f>& points, const DistanceField& field,
-                           const Symmetry::Axis& axis, double angle)
+                           const Symmetry::Axis& axis, double angle, double last_gate)
 {
   constexpr int STEPS = 8;
   constexpr double SAME_ANGLE = 0.05;
+  const double first_gate = 0.99 * static_cast<double>(field.band());
+  const double shrinkage = std::min(1.0, std::pow(last_gate / first_gate, 1.0 / (STEPS - 1)));
+  double gate = first_gate;
   Pose T = rotationAbout(axis, angle);
-  for (int step = 0; step < STEPS; ++step)
-    T = improved(points, field, T, axis.origin);
+  for (int step = 0; step < STEPS; ++step, gate *= shrinkage)
+    T = improved(points, field, T, axis.origin, static_cast<float>(gate));
   const Eigen::AngleAxisd turn(T.linear());
   const Eigen::Vector3d direction = turn.axis().dot(axis.direction) < 0 ? Eigen::Vector3d(-turn.axis()) : turn.axis();
   if (!T.matrix().allFinite() || std::abs(turn.angle() - angle) > SAME_ANGLE)
@@ -151,5 +156,43 @@ Symmetry::Axis refinedAxis(const std::vector<Eigen::Vector3f>& points, const Dis
   const Eigen::Vector3d m = T * axis.origin - axis.origin;
   const Eigen::Vector3d across = m - m.dot(direction) * direction;
   return {direction, axis.origin + (across + direction.cross(across) / std::tan(angle / 2)) / 2};
+}
+
+double brokenShare(const std::vector<Eigen::Vector3f>& points, const DistanceField& field, const Pose& T,
+                   double tolerance)
+{
+  const Eigen::Isometry3f motion = T.cast<float>();
+  const auto limit = static_cast<float>(tolerance);
+  const auto broken = std::count_if(points.begin(), points.end(),
+                                    [&](const Eigen::Vector3f& p) { return std::abs(field.at(motion * p)) > limit; });
+  return static_cast<double>(broken) / static_cast<double>(std::max<std::size_t>(1, points.size()));
+}
+
+Symmetry::Axis settledAxis(const std::vector<Eigen::Vector3f>& points, const DistanceField& field,
+                           const Symmetry::Axis& axis, double tolerance)
+{
+  // Large turns only: an axis is off by more than the surface by the cotangent of half the angle.
+  constexpr int FIRST = 60;  // degrees
+  constexpr int STEP = 3;
+  double least = std::numeric_limits<double>::infinity();
+  double best = 0;
+  for (int degrees = FIRST; degrees <= 180; degrees += STEP)
+  {
+    const double angle = degrees * M_PI / 180;
+    const double distance = meanDistance(points, field, rotationAbout(axis, angle));
+    if (distance < least)
+    {
+      least = distance;
+      best = angle;
+    }
+  }
+  const Symmetry::Axis refined = refinedAxis(points, field, axis, best, tolerance);
+  const double before = brokenShare(points, field, rotationAbout(axis, best), tolerance);
+  const double after = brokenShare(points, field, rotationAbout(refined, best), tolerance);
+  const double gain = least - meanDistance(points, field, rotationAbout(refined, best));
+  // Round numbers of a drawing are better than equally good measured ones.
+  constexpr double LITTLE = 0.02;  // of the tolerance
+  constexpr double FEW = 0.02;     // of the points, which fall to either side of the tolerance
+  return after < before + FEW && gain > LITTLE * tolerance ? refined : axis;
 }
 }  // namespace bin_picking

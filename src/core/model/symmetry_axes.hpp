@@ -31,7 +31,18 @@ std::vector<Eigen::Vector3d> undecidedDirections(const Inertia& inertia);
 double meanDistance(const std::vector<Eigen::Vector3f>& points, const DistanceField& field, const Pose& T);
 
 /// The rotation by the same angle whose axis is nearby and keeps the points nearest to the surface (least squares).
-/// \return its axis, or the given one where the points slide away to another angle
+/// \param last_gate metres: what is off by more counts less and less, and in the end no more; at least the field's
+/// band: all counts alike \return its axis, or the given one where the points slide away to another angle
 Symmetry::Axis refinedAxis(const std::vector<Eigen::Vector3f>& points, const DistanceField& field,
-                           const Symmetry::Axis& axis, double angle);
+                           const Symmetry::Axis& axis, double angle, double last_gate);
+
+/// Share of the points that a motion takes off the surface by more than the tolerance.
+double brokenShare(const std::vector<Eigen::Vector3f>& points, const DistanceField& field, const Pose& T,
+                   double tolerance);
+
+/// The axis as the turn about it that keeps the surface best would have it, whatever breaks it: boxes and moments of
+/// inertia give the axis of what is almost symmetric only roughly. \param tolerance metres: what is off by more breaks
+/// \return the given axis where that is no better
+Symmetry::Axis settledAxis(const std::vector<Eigen::Vector3f>& points, const DistanceField& field,
+                           const Symmetry::Axis& axis, double tolerance);
 }  // namespace bin_picking

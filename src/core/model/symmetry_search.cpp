@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bin_picking_perception/common/error.hpp"
 #include "symmetry_axes.hpp"
@@ -13,7 +14,9 @@ namespace bin_picking
 {
 namespace
 {
-constexpr int MAX_ORDER = 12;
+constexpr int MAX_ORDER = 60;      // the teeth of a gear; with a flip, as many rotations as a symmetry may have
+constexpr int MAX_FEW_SIDES = 12;  // of a polygon: higher orders must stand out against the turns between them
+constexpr double ALL = std::numeric_limits<double>::infinity();
 constexpr int REVOLUTION_STEPS = 37;  // prime: no polygon of few sides repeats at all of them
 constexpr std::size_t COARSE_POINTS = 400;
 constexpr double MAX_COARSE = 0.3;  // of the band: a mean distance beyond it is no rotation that a refinement mends
@@ -66,7 +69,7 @@ private:
   {
     if (meanDistance(coarse_, field_, rotationAbout(axis, angle)) > MAX_COARSE * static_cast<double>(field_.band()))
       return std::nullopt;
-    const Symmetry::Axis refined = refinedAxis(coarse_, field_, {axis.direction, inertia_.center}, angle);
+    const Symmetry::Axis refined = refinedAxis(coarse_, field_, {axis.direction, inertia_.center}, angle, ALL);
     const double gain = meanDistance(coarse_, field_, rotationAbout(axis, angle)) -
                         meanDistance(coarse_, field_, rotationAbout(refined, angle));
     // Round numbers of a drawing are better than equally good measured ones.
@@ -114,15 +117,8 @@ private:
   }
 
   /// Share of the surface that is moved off itself, by the field alone: fast, and blind to less than its cells.
-  double offShare(const Pose& T) const
-  {
-    const auto limit = static_cast<float>(std::max(tolerance(), 0.1 * static_cast<double>(field_.band())));
-    const Eigen::Isometry3f motion = T.cast<float>();
-    const auto& points = surface_.queries().points;
-    const auto off = std::count_if(points.begin(), points.end(),
-                                   [&](const Eigen::Vector3f& p) { return std::abs(field_.at(motion * p)) > limit; });
-    return static_cast<double>(off) / static_cast<double>(points.size());
-  }
+  double offShare(const Pose& T) const { return brokenShare(surface_.queries().points, field_, T, offLimit()); }
+  double offLimit() const { return std::max(tolerance(), 0.1 * static_cast<double>(field_.band())); }
 
   /// A half turn across the axis of revolution: about all such axes through one point of it, or about none.
   void findFlip()
@@ -139,14 +135,29 @@ private:
       }
   }
 
+  /// Else a high order is that of anything nearly round, or of a turn next to the right one, and costs a refinement.
+  bool standsOut(const Symmetry::Axis& axis, int order) const
+  {
+    const auto distanceAt = [&](double angle) { return meanDistance(coarse_, field_, rotationAbout(axis, angle)); };
+    if (order <= MAX_FEW_SIDES)
+      return true;
+    const double limit = 0.5 * distanceAt(angleOf(2 * order));
+    for (int k = 1; k <= order / 2; ++k)
+      if (distanceAt(k * angleOf(order)) >= limit)
+        return false;
+    return true;
+  }
+
   void findHighestOrder(const Symmetry::Axis& candidate)
   {
     for (int order = MAX_ORDER; order >= 2; --order)
-      if (const auto axis = keptBy(candidate, angleOf(order)))
-      {
-        addToGroup(*axis, order);
-        return;
-      }
+    {
+      const auto axis = standsOut(candidate, order) ? keptBy(candidate, angleOf(order)) : std::nullopt;
+      if (!axis)
+        continue;
+      addToGroup(*axis, order);
+      return;
+    }
   }
 
   /// Axes that the moments of inertia leave open, best first.
@@ -173,7 +184,7 @@ private:
     for (const Candidate& candidate : candidates)
     {
       const double angle = angleOf(candidate.order);
-      const Symmetry::Axis axis = refinedAxis(coarse_, field_, candidate.axis, angle);
+      const Symmetry::Axis axis = refinedAxis(coarse_, field_, candidate.axis, angle, ALL);
       if (!isKnown(rotationAbout(axis, angle)) && surface_.keeps(rotationAbout(axis, angle), tolerance()))
         addToGroup(axis, candidate.order);
     }
@@ -226,11 +237,14 @@ private:
   }
 
   /// The most that this axis nearly keeps: a revolution rather than an order, a high order rather than a low one.
-  void findAlmost(const Symmetry::Axis& axis)
+  void findAlmost(const Symmetry::Axis& candidate)
   {
+    const Symmetry::Axis axis = settledAxis(coarse_, field_, candidate, offLimit());
     for (int k = MAX_ORDER + 1; k >= 2; --k)
     {
       const int order = k > MAX_ORDER ? AxisFinding::CONTINUOUS : k;
+      if (order != AxisFinding::CONTINUOUS && !standsOut(axis, order))
+        continue;
       const Pose T = worstTurn(axis, order);
       const double share = offShare(T);
       if (share > MAX_ALMOST_SHARE || isPartOfSymmetry(T) || isFound(axis, order))
@@ -243,8 +257,13 @@ private:
   /// Parallel axes tell the same; the one with the least mismatch tells it best.
   void keepBestAlmost()
   {
+    // Of what breaks about alike, the most that is kept: a revolution, or the highest order.
+    const auto rank = [](const AxisFinding& one) {
+      const int order = one.order == AxisFinding::CONTINUOUS ? MAX_ORDER + 1 : one.order;
+      return std::make_pair(std::lround(100 * one.mismatch.share), -order);
+    };
     std::stable_sort(report_.almost.begin(), report_.almost.end(),
-                     [](const AxisFinding& a, const AxisFinding& b) { return a.mismatch.share < b.mismatch.share; });
+                     [&](const AxisFinding& a, const AxisFinding& b) { return rank(a) < rank(b); });
     std::vector<AxisFinding> kept;
     for (const AxisFinding& one : report_.almost)
       if (kept.size() < MAX_ALMOST && std::none_of(kept.begin(), kept.end(), [&](const AxisFinding& other) {
