@@ -92,7 +92,7 @@ void rivals(benchmark::State& state)
   forEachPose(state, [&](const Pose&) {
     benchmark::DoNotOptimize(chooseAmongRivals(*bench.model, settled[k++ % settled.size()], bench.scene.grid,
                                                bench.scene.surroundings, bench.tolerance,
-                                               bench.parameters.verification.min_turn_margin));
+                                               bench.parameters.verification.min_turn_margin, refined));
   });
 }
 BENCHMARK(rivals)->Unit(benchmark::kMillisecond);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -29,12 +30,15 @@ struct RivalChoice
   double margin_beyond_turn = std::numeric_limits<double>::infinity();
 };
 
-/// \param T_camera_object refined
+/// The rivals that come nearest are refined before they are judged: a wrong pose was refined to where it explains most,
+/// from where a turn leads beside the right one.
+/// \param T_camera_object refined. \param refine a few steps of a pose towards what was measured
 /// \param tolerance of the distance to the surface, metres
 /// \param min_margin smaller ones cannot be told apart
 /// \param grid what belongs to parts; \param surroundings the same grid with the bin
 RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
-                              const DepthGrid& surroundings, double tolerance, double min_margin);
+                              const DepthGrid& surroundings, double tolerance, double min_margin,
+                              const std::function<Pose(const Pose&)>& refine);
 
 /// Of the measured points that lie near the part's surface at the pose, the share that lies on it; 0 if none is near. A
 /// part of another shape explains much of the surface it was laid on, but leaves points beside it.

@@ -29,7 +29,7 @@ struct VerificationParameters
   double min_inlier_share = 0.75;
   double max_violation_share = 0.2;
   double unmeasured_weight = 0.3;
-  double min_turn_margin = 10;
+  double min_turn_margin = 14;
   bool accept_undetermined_turns = true;
   double min_surface_share = 0.8;
   double max_continued_share = 0.01;

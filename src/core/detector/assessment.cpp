@@ -133,8 +133,9 @@ void requireNoContinuation(Detection& detection, const PoseEvidence& evidence, c
 }
 
 /// Of the poses that look much the same, the one that the scene contradicts least, polished.
-/// \param undetermined_turn what it leaves open. \param turn_margin against all others
-Pose settle(const Pose& rough, const PreparedScene& scene, const TrainedModel& model,
+/// \param pose that led to the rough one. \param undetermined_turn what it leaves open. \param turn_margin against all
+/// others
+Pose settle(const Hypothetical& pose, const Pose& rough, const PreparedScene& scene, const TrainedModel& model,
             const DetectorParameters& parameters, std::optional<UndeterminedTurn>& undetermined_turn,
             double& turn_margin)
 {
@@ -143,7 +144,9 @@ Pose settle(const Pose& rough, const PreparedScene& scene, const TrainedModel& m
     return polish(rough, scene, model, parameters.icp);
   const RivalChoice choice =
       chooseAmongRivals(model, rough, scene.grid, scene.surroundings, depthTolerance(scene, model, verification),
-                        verification.min_turn_margin);
+                        verification.min_turn_margin, [&](const Pose& rival) {
+                          return refineRoughly({rival, pose.votes, pose.region}, scene, model, parameters.icp);
+                        });
   turn_margin = choice.margin;
   if (verification.accept_undetermined_turns && choice.undetermined_turn &&
       choice.margin_beyond_turn >= verification.min_turn_margin)
@@ -195,7 +198,7 @@ Assessed refineAndTest(const Hypothetical& pose, const PreparedScene& scene, con
       return assessed;
     }
   }
-  const Pose T = settle(rough, scene, model, parameters, detection.undetermined_turn, quality.turn_margin);
+  const Pose T = settle(pose, rough, scene, model, parameters, detection.undetermined_turn, quality.turn_margin);
   detection.T_camera_object = T;
   const SurfaceIndices visible = visiblePoints(model, T);
   const SurfaceIndices tested = thinned(visible, TEST_POINTS);

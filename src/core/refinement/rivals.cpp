@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "bin_picking_perception/model/slight_turn.hpp"
@@ -13,7 +14,9 @@ namespace bin_picking
 {
 namespace
 {
-constexpr double OTHER_POSE = 0.1;    // of the diameter: nearer rivals are the same for a gripper
+constexpr double OTHER_POSE = 0.1;  // of the diameter: nearer rivals are the same for a gripper
+constexpr std::size_t REFINED_RIVALS = 3;
+constexpr int MOST_RESTARTS = 2;
 constexpr int FINE_STEPS = 4;         // to either side
 constexpr double FINE_ANGLE = 0.044;  // rad: together half a step of the near symmetries
 
@@ -32,6 +35,51 @@ Pose betweenSteps(const Pose& step, const Symmetry::Axis& axis, const Contradict
     }
   }
   return best;
+}
+
+/// Turns from a pose to its rivals; the first is none.
+struct Turns
+{
+  std::vector<Pose> steps;      ///< the near symmetries
+  std::vector<Pose> refined;    ///< where they led to
+  std::vector<double> against;  ///< what contradicts these
+};
+
+Turns turnsOf(const TrainedModel& model)
+{
+  Turns turns;
+  turns.steps = {Pose::Identity()};
+  for (const NearSymmetry& near : model.near_symmetries)
+    turns.steps.push_back(near.T_object_object);
+  turns.refined = turns.steps;
+  return turns;
+}
+
+/// Turns of what is nearly a body of revolution take it to no other place, however far it was off.
+bool leadsBeside(const NearSymmetry& near) { return !near.slight_all_around; }
+
+/// The few that the scene contradicts least.
+void refineNearest(const TrainedModel& model, const Pose& T_camera_object, const Contradiction& contradiction,
+                   const std::function<Pose(const Pose&)>& refine, Turns& turns)
+{
+  std::vector<std::size_t> order;
+  for (std::size_t k = 1; k < turns.steps.size(); ++k)
+    if (leadsBeside(model.near_symmetries[k - 1]))
+      order.push_back(k);
+  const std::size_t few = std::min(REFINED_RIVALS, order.size());
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(few), order.end(),
+                    [&](std::size_t a, std::size_t b) { return turns.against[a] < turns.against[b]; });
+  const double hopeless = *std::min_element(turns.against.begin(), turns.against.end()) + MOST_MARGIN;
+  for (std::size_t k = 0; k < few && turns.against[order[k]] < hopeless; ++k)
+  {
+    const std::size_t rival = order[k];
+    const Pose turn = T_camera_object.inverse() * refine(T_camera_object * turns.steps[rival]);
+    const double against = contradiction(turn);
+    if (against >= turns.against[rival])
+      continue;
+    turns.against[rival] = against;
+    turns.refined[rival] = turn;
+  }
 }
 
 /// Another pose than the chosen one.
@@ -115,41 +163,75 @@ void leaveTurnOpen(const TrainedModel& model, std::vector<Rival>& rivals, double
   choice.undetermined_turn = turns.undetermined(rivals, min_margin);
   choice.margin_beyond_turn = turns.marginBeyond(rivals, min_margin);
 }
-}  // namespace
-
-RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
-                              const DepthGrid& surroundings, double tolerance, double min_margin)
+/// The pose and its rivals as far as the nearest of them were refined.
+struct Judgement
 {
   RivalChoice choice;
+  bool is_elsewhere = false;  ///< the choice may lie beside where a turn led to
+};
+
+Judgement judgeRivals(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
+                      const DepthGrid& surroundings, double tolerance, double min_margin,
+                      const std::function<Pose(const Pose&)>& refine)
+{
+  Judgement judgement;
+  RivalChoice& choice = judgement.choice;
   choice.T_camera_object = T_camera_object;
-  if (model.near_symmetries.empty())
-    return choice;
-  std::vector<Pose> turns = {Pose::Identity()};
-  for (const NearSymmetry& near : model.near_symmetries)
-    turns.push_back(near.T_object_object);
+  Turns turns = turnsOf(model);
   Contradiction contradiction(model, T_camera_object, grid, surroundings, tolerance);
-  const std::vector<double> against = contradiction.ofAll(turns);
+  turns.against = contradiction.ofAll(turns.steps);
+  refineNearest(model, T_camera_object, contradiction, refine, turns);
+  const std::vector<double>& against = turns.against;
   const auto best = static_cast<std::size_t>(std::min_element(against.begin(), against.end()) - against.begin());
   if (best > 0)
   {
+    judgement.is_elsewhere = leadsBeside(model.near_symmetries[best - 1]);
     choice.turned = true;
-    choice.T_camera_object =
-        T_camera_object * betweenSteps(turns[best], model.near_symmetries[best - 1].axis, contradiction, against[best]);
+    choice.T_camera_object = T_camera_object * betweenSteps(turns.refined[best], model.near_symmetries[best - 1].axis,
+                                                            contradiction, against[best]);
     choice.T_camera_object.linear() =
         Eigen::Quaterniond(choice.T_camera_object.linear()).normalized().toRotationMatrix();
   }
   // Steps against steps: a turn between them would seem surer than it is, for the others were not turned further.
   std::vector<Rival> rivals;
-  for (std::size_t k = 0; k < turns.size(); ++k)
+  for (std::size_t k = 0; k < against.size(); ++k)
     if (k != best &&
-        farthestMotion(model, T_camera_object * turns[k], choice.T_camera_object) > OTHER_POSE * model.diameter)
+        farthestMotion(model, T_camera_object * turns.refined[k], choice.T_camera_object) > OTHER_POSE * model.diameter)
     {
-      rivals.push_back({turns[best].inverse() * turns[k], against[k] - against[best]});
+      rivals.push_back({turns.steps[best].inverse() * turns.steps[k], against[k] - against[best]});
       choice.margin = std::min(choice.margin, rivals.back().margin);
     }
   choice.margin_beyond_turn = choice.margin;
   if (choice.margin < min_margin)
     leaveTurnOpen(model, rivals, min_margin, choice);
-  return choice;
+  return judgement;
+}
+}  // namespace
+
+RivalChoice chooseAmongRivals(const TrainedModel& model, const Pose& T_camera_object, const DepthGrid& grid,
+                              const DepthGrid& surroundings, double tolerance, double min_margin,
+                              const std::function<Pose(const Pose&)>& refine)
+{
+  if (model.near_symmetries.empty())
+  {
+    RivalChoice alone;
+    alone.T_camera_object = T_camera_object;
+    return alone;
+  }
+  const auto judge = [&](const Pose& pose) {
+    return judgeRivals(model, pose, grid, surroundings, tolerance, min_margin, refine);
+  };
+  Judgement judgement = judge(T_camera_object);
+  // A rival that was refined to its place comes off better than those that were not: they are judged again from there,
+  // and what came near in any judgement counts.
+  for (int again = 0; judgement.is_elsewhere && again < MOST_RESTARTS; ++again)
+  {
+    Judgement next = judge(refine(judgement.choice.T_camera_object));
+    next.choice.turned = true;
+    next.choice.margin = std::min(next.choice.margin, judgement.choice.margin);
+    next.choice.margin_beyond_turn = std::min(next.choice.margin_beyond_turn, judgement.choice.margin_beyond_turn);
+    judgement = next;
+  }
+  return judgement.choice;
 }
 }  // namespace bin_picking
