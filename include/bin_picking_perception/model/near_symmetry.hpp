@@ -27,13 +27,15 @@ struct NearSymmetry
   bool slight_all_around = false;
 };
 
-/// Of a turn about an axis of near symmetries: they come in steps of a turn / NEAR_SYMMETRY_STEPS.
+/// Near symmetries about one axis come in steps of a turn / NEAR_SYMMETRY_STEPS, but for turns at which the surface
+/// falls back onto itself, as a gear does tooth by tooth: those take the place of the steps beside them.
 constexpr int NEAR_SYMMETRY_STEPS = 24;
 
-/// Turns about the box's and the principal axes that keep most of the surface. Declared symmetries are not among them.
-/// \param surface of the part, even. \param tolerance metres: what is moved off the surface by less counts as kept
-/// \param exact the same surface, for the deviation: the field is cut at its band
-/// \param slight_deviation metres: larger ones are not slight
+/// Turns that keep most of the surface, about the box's and the principal axes, each moved to where the best of its
+/// turns has it: what breaks a symmetry draws these axes aside, and a rival beside its place is none. Declared
+/// symmetries are not among them. \param surface of the part, even. \param tolerance metres: what is moved off the
+/// surface by less counts as kept \param exact the same surface, for the deviation: the field is cut at its band \param
+/// slight_deviation metres: larger ones are not slight
 std::vector<NearSymmetry> findNearSymmetries(const OrientedPoints& surface, const DistanceField& field,
                                              const SelfComparison& exact, const Symmetry& declared, double tolerance,
                                              double slight_deviation);

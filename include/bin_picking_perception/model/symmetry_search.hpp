@@ -65,7 +65,7 @@ private:
   OrientedPoints queries_;
 };
 
-/// The rotations up to order 12 and revolutions that move no point of the surface by more than the tolerance. Every
+/// The rotations up to order 60 and revolutions that move no point of the surface by more than the tolerance. Every
 /// such axis passes through the centroid and is a principal axis of inertia; where two or three of the moments agree it
 /// is searched in their plane, or all around.
 /// \param field of the same surface; its band should be several tolerances

@@ -70,8 +70,8 @@ Symmetry symmetryOf(const PartDefinition& definition, const Executor& executor);
 /// values. \throws ParameterError the part's training values are not valid
 std::uint64_t requestHash(const PartDefinition& definition, const TrainingParameters& parameters);
 
-/// Version of the model file's layout; other versions are not read.
-constexpr std::uint32_t MODEL_FILE_VERSION = 5;
+/// Version of the model file's layout and of what training puts there; other versions are not read.
+constexpr std::uint32_t MODEL_FILE_VERSION = 6;
 
 /// Binary file: magic, version, hashes, payload, checksum. Written to a temporary name first, then renamed.
 /// \throws FileError cannot be written
