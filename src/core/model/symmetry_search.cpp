@@ -84,7 +84,8 @@ private:
   {
     if (report_.round)
       return;
-    const std::optional<Symmetry::Axis> axis = keptBy(candidate, angleOf(REVOLUTION_STEPS) * (REVOLUTION_STEPS / 4));
+    constexpr int QUARTER = REVOLUTION_STEPS / 4;
+    const std::optional<Symmetry::Axis> axis = keptBy(candidate, angleOf(REVOLUTION_STEPS) * QUARTER);
     if (!axis)
       return;
     for (int k = 1; k <= REVOLUTION_STEPS / 2; ++k)
