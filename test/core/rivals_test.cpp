@@ -191,7 +191,8 @@ struct ShaftView
     for (int i = 0; i < static_cast<int>(grid.size()); ++i)
       if (!grid.valid(i))  // a floor that is not a part
       {
-        const Eigen::Vector3d p = grid.camera.backProject(i % grid.width, i / grid.width, 0.66);
+        const int row = i / grid.width;
+        const Eigen::Vector3d p = grid.camera.backProject(i % grid.width, row, 0.66);
         surroundings.x[static_cast<std::size_t>(i)] = static_cast<float>(p.x());
         surroundings.y[static_cast<std::size_t>(i)] = static_cast<float>(p.y());
         surroundings.z[static_cast<std::size_t>(i)] = static_cast<float>(p.z());
