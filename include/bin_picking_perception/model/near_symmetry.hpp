@@ -33,9 +33,12 @@ constexpr int NEAR_SYMMETRY_STEPS = 24;
 
 /// Turns that keep most of the surface, about the box's and the principal axes, each moved to where the best of its
 /// turns has it: what breaks a symmetry draws these axes aside, and a rival beside its place is none. Declared
-/// symmetries are not among them. \param surface of the part, even. \param tolerance metres: what is moved off the
-/// surface by less counts as kept \param exact the same surface, for the deviation: the field is cut at its band \param
-/// slight_deviation metres: larger ones are not slight
+/// symmetries are not among them.
+///
+/// \param surface of the part, even
+/// \param tolerance metres: what is moved off the surface by less counts as kept
+/// \param exact the same surface, for the deviation: the field is cut at its band
+/// \param slight_deviation metres: larger ones are not slight
 std::vector<NearSymmetry> findNearSymmetries(const OrientedPoints& surface, const DistanceField& field,
                                              const SelfComparison& exact, const Symmetry& declared, double tolerance,
                                              double slight_deviation);

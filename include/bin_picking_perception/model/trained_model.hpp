@@ -63,7 +63,7 @@ std::shared_ptr<const TrainedModel> trainPart(const PartDefinition& definition, 
 
 /// The symmetry that training gives the part: the stated one, otherwise what its surface shows at the automatic leaf or
 /// that of the definition. Takes some tenths of a second where it has to look. \throws FileError a mesh that cannot be
-/// used
+/// used \throws ParameterError as trainPart does: the size is not the expected one, or the leaf does not fit it
 Symmetry symmetryOf(const PartDefinition& definition, const Executor& executor);
 
 /// Hash of what a model is asked to be: name, unit, symmetry and every parameter, with the part's own `training:`

@@ -32,7 +32,7 @@ struct RivalChoice
 
 /// The rivals that come nearest are refined before they are judged: a wrong pose was refined to where it explains most,
 /// from where a turn leads beside the right one.
-/// \param T_camera_object refined. \param refine a few steps of a pose towards what was measured
+/// \param T_camera_object refined. \param refine does with a pose what was done with that one, so that they compare
 /// \param tolerance of the distance to the surface, metres
 /// \param min_margin smaller ones cannot be told apart
 /// \param grid what belongs to parts; \param surroundings the same grid with the bin

@@ -3,11 +3,11 @@
 #include "bin_picking_perception/model/near_symmetry.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "symmetry_axes.hpp"
+#include "turn_profile.hpp"
 
 namespace bin_picking
 {
@@ -33,124 +33,6 @@ std::vector<Eigen::Vector3f> fewOf(const std::vector<Eigen::Vector3f>& points)
   return few;
 }
 
-/// A turn that is tried, rad.
-struct Angle
-{
-  double angle = 0;
-  bool is_gap = false;  ///< where the surface is worst off beside a turn that stands out: no rival, but not passed over
-
-  bool operator<(const Angle& other) const { return angle < other.angle; }
-};
-
-/// Mean distances of the turned surface from itself, degree by degree.
-class TurnProfile
-{
-public:
-  TurnProfile(const std::vector<Eigen::Vector3f>& points, const DistanceField& field, const Symmetry::Axis& axis)
-      : points_(points), field_(field), axis_(axis)
-  {
-    for (int k = 0; k <= 180; ++k)
-      distance_[static_cast<std::size_t>(k)] = distanceAt(k * DEGREE);
-  }
-
-  /// Up to half a turn: where the surface falls back onto itself, as a gear does tooth by tooth, and the gaps beside.
-  std::vector<Angle> thatStandOut() const
-  {
-    std::vector<Angle> angles;
-    for (int k = 1; k <= 180; ++k)
-    {
-      const int before = worst(k, -1);
-      const int after = worst(k, 1);
-      if (!isLeast(k) || at(k) > STANDS_OUT * std::min(at(before), at(after)))
-        continue;
-      angles.push_back({before * DEGREE, true});
-      angles.push_back({refined(k), false});
-      if (after <= 180)
-        angles.push_back({after * DEGREE, true});
-    }
-    return angles;
-  }
-
-private:
-  static constexpr double DEGREE = M_PI / 180;
-  static constexpr double STANDS_OUT = 0.7;  // of the lower of the two sides
-  static constexpr int NEAR_BY = 3;          // degrees: further away another one may stand out
-  static constexpr int BESIDE = 8;           // degrees: a gear of 28 teeth is worst off at half of 13
-
-  double distanceAt(double angle) const { return meanDistance(points_, field_, rotationAbout(axis_, angle)); }
-
-  /// Alike in either direction.
-  double at(int degrees) const
-  {
-    const int within = std::abs(degrees) % 360;
-    return distance_[static_cast<std::size_t>(std::min(within, 360 - within))];
-  }
-
-  int worst(int k, int direction) const
-  {
-    int worst = k;
-    for (int step = 1; step <= BESIDE; ++step)
-      if (at(k + direction * step) > at(worst))
-        worst = k + direction * step;
-    return worst;
-  }
-
-  /// Of equals the first.
-  bool isLeast(int k) const
-  {
-    for (int step = 1; step <= NEAR_BY; ++step)
-      if (at(k - step) <= at(k) || at(k + step) < at(k))
-        return false;
-    return true;
-  }
-
-  /// To a tenth of a degree.
-  double refined(int k) const
-  {
-    double best = k * DEGREE;
-    double least = at(k);
-    for (int tenth = -9; tenth <= 9 && k < 180; ++tenth)
-      if (const double distance = distanceAt((k + 0.1 * tenth) * DEGREE); distance < least)
-      {
-        least = distance;
-        best = (k + 0.1 * tenth) * DEGREE;
-      }
-    return best;
-  }
-
-  const std::vector<Eigen::Vector3f>& points_;
-  const DistanceField& field_;
-  const Symmetry::Axis& axis_;
-  std::array<double, 181> distance_;
-};
-
-/// Ascending, from no turn to before a full one, alike in either direction: the even steps, but what stands out in
-/// place of those beside it.
-std::vector<Angle> anglesToTry(std::vector<Angle> that_stand_out)
-{
-  constexpr double BESIDE = 5 * M_PI / 180;
-  constexpr double SAME = 0.5 * M_PI / 180;
-  std::vector<Angle> half = std::move(that_stand_out);
-  const auto fixed = static_cast<std::ptrdiff_t>(half.size());
-  for (int k = 1; k <= NEAR_SYMMETRY_STEPS / 2; ++k)
-  {
-    const double angle = 2 * M_PI * k / NEAR_SYMMETRY_STEPS;
-    if (std::none_of(half.begin(), half.begin() + fixed,
-                     [&](const Angle& other) { return !other.is_gap && std::abs(other.angle - angle) < BESIDE; }))
-      half.push_back({angle, false});
-  }
-  std::sort(half.begin(), half.end());
-  half.erase(std::unique(half.begin(), half.end(),
-                         [&](const Angle& a, const Angle& b) { return b.angle - a.angle < SAME && b.is_gap; }),
-             half.end());
-  std::vector<Angle> all = {{0, false}};
-  all.insert(all.end(), half.begin(), half.end());
-  for (auto angle = half.rbegin(); angle != half.rend(); ++angle)
-    if (angle->angle < M_PI - SAME)
-      all.push_back({2 * M_PI - angle->angle, angle->is_gap});
-  return all;
-}
-
 /// A hole that is turned away is seen from one side, what stands out from the other.
 double deviationOf(const Pose& T, const SelfComparison& surface)
 {
@@ -163,7 +45,7 @@ class TurnsAboutAxis
 {
 public:
   /// \param angles ascending; the first is no turn at all
-  TurnsAboutAxis(const Symmetry::Axis& axis, const std::vector<Angle>& angles, double slight_deviation)
+  TurnsAboutAxis(const Symmetry::Axis& axis, const std::vector<TriedTurn>& angles, double slight_deviation)
       : axis_(axis), slight_deviation_(slight_deviation), turns_(angles.size())
   {
     for (std::size_t k = 0; k < angles.size(); ++k)
@@ -212,7 +94,7 @@ private:
 
   struct Turn
   {
-    Angle tried;
+    TriedTurn tried;
     Kind kind = Kind::Other;
     NearSymmetry near;
   };
@@ -257,7 +139,7 @@ std::vector<NearSymmetry> findNearSymmetries(const OrientedPoints& surface, cons
   std::vector<NearSymmetry> found;
   for (const Symmetry::Axis& axis : settledAxes(surface, points, field, tolerance))
   {
-    TurnsAboutAxis turns(axis, anglesToTry(TurnProfile(points, field, axis).thatStandOut()), slight_deviation);
+    TurnsAboutAxis turns(axis, anglesToTry(points, field, axis), slight_deviation);
     for (std::size_t k = 1; k < turns.size(); ++k)
     {
       const Pose T = turns.motion(k);

@@ -31,8 +31,9 @@ std::vector<Eigen::Vector3d> undecidedDirections(const Inertia& inertia);
 double meanDistance(const std::vector<Eigen::Vector3f>& points, const DistanceField& field, const Pose& T);
 
 /// The rotation by the same angle whose axis is nearby and keeps the points nearest to the surface (least squares).
-/// \param last_gate metres: what is off by more counts less and less, and in the end no more; at least the field's
-/// band: all counts alike \return its axis, or the given one where the points slide away to another angle
+/// \param last_gate metres: what is off by more does not count in the last step; in the first all within the field's
+/// band do, and infinity lets them count to the end \return its axis, or the given one where the points slide away to
+/// another angle
 Symmetry::Axis refinedAxis(const std::vector<Eigen::Vector3f>& points, const DistanceField& field,
                            const Symmetry::Axis& axis, double angle, double last_gate);
 

@@ -255,10 +255,10 @@ private:
     }
   }
 
-  /// Parallel axes tell the same; the one with the least mismatch tells it best.
+  /// Parallel axes tell the same; the one of which least breaks tells it best.
   void keepBestAlmost()
   {
-    // Of what breaks about alike, the most that is kept: a revolution, or the highest order.
+    // Where about as much breaks, the one that keeps most: a revolution, or the highest order.
     const auto rank = [](const AxisFinding& one) {
       const int order = one.order == AxisFinding::CONTINUOUS ? MAX_ORDER + 1 : one.order;
       return std::make_pair(std::lround(100 * one.mismatch.share), -order);

@@ -163,6 +163,7 @@ void leaveTurnOpen(const TrainedModel& model, std::vector<Rival>& rivals, double
   choice.undetermined_turn = turns.undetermined(rivals, min_margin);
   choice.margin_beyond_turn = turns.marginBeyond(rivals, min_margin);
 }
+
 /// The pose and its rivals as far as the nearest of them were refined.
 struct Judgement
 {
