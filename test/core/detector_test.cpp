@@ -406,6 +406,44 @@ TEST(Match, fitsTheDistanceFieldFarBelowTheSpacingOfThePoints)
   }
 }
 
+TEST(Match, returnsEachPlaceOnce)
+{
+  const TrainedModel& tee = *test::teeModel();
+  for (const std::uint32_t seed : {1u, 2u, 3u, 4u, 5u, 6u})
+  {
+    std::mt19937 random(seed);
+    Pose truth = test::randomPose(random, 0.1);
+    truth.translation().z() += 0.6;
+    DetectorParameters parameters;
+    parameters.verification.min_matching_rate = 0;
+    const std::vector<Detection> found = detector(parameters).match(facingScan(truth, seed), false).detections;
+    EXPECT_EQ(indexOf(found, truth), 0) << "seed " << seed;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+      {
+        const PoseError between =
+            poseError(found[i].T_camera_object, found[j].T_camera_object, tee.symmetry, tee.center);
+        EXPECT_TRUE(between.translation > 0.05 * tee.diameter || between.rotation > 0.2) << i << " and " << j;
+      }
+  }
+}
+
+TEST(Match, residualsDecideWhereTheMatchingRateIsBlind)
+{
+  for (const std::uint32_t seed : {1u, 2u, 3u, 4u, 5u, 6u})
+  {
+    std::mt19937 random(seed);
+    Pose truth = test::randomPose(random, 0.1);
+    truth.translation().z() += 0.6;
+    DetectorParameters parameters;
+    parameters.verification.match_distance = 0.1;  // wider than the part: at any pose it matches
+    const DetectionResult result = detector(parameters).match(facingScan(truth, seed), false);
+    ASSERT_GT(result.detections.size(), 1u);
+    EXPECT_EQ(result.detections.front().matching_rate, result.detections.back().matching_rate);
+    EXPECT_EQ(indexOf(result.detections, truth), 0) << "seed " << seed;
+  }
+}
+
 TEST(Match, saysWhyNothingWasFoundAndThatTimeWasUp)
 {
   const OrientedPoints ball = test::sphere(0.05, 20000);

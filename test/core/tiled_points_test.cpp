@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include "../../src/core/scene/voxel_order.hpp"
 #include "analytic_surfaces.hpp"
 #include "bin_picking_perception/common/error.hpp"
+#include "bin_picking_perception/scene/curvature.hpp"
 
 namespace bin_picking
 {
@@ -55,6 +57,32 @@ TEST(TiledPoints, MomentsAreThoseOfAllNeighbours)
     const double reach = static_cast<double>(RADIUS);
     EXPECT_LT((found.sum - expected.sum).norm(), 1.1 * reach);
     EXPECT_LT((found.products - expected.products).norm(), 1.1 * reach * reach);
+  }
+}
+
+TEST(TiledPoints, QuadricMomentsAreThoseOfAllNeighbours)
+{
+  const OrientedPoints points = thinTorus();
+  const TiledPoints tiled(points, RADIUS);
+  for (std::size_t query = 0; query < points.size(); query += 997)
+  {
+    const Eigen::Matrix3f frame = tangentFrame(points.normals[query], static_cast<double>(RADIUS));
+    const std::vector<std::size_t> neighbours = neighboursOf(query, points);
+    Eigen::MatrixXd terms(neighbours.size(), 6);
+    Eigen::VectorXd heights(neighbours.size());
+    for (std::size_t k = 0; k < neighbours.size(); ++k)
+    {
+      const Eigen::Vector3d p = (frame * (points.points[neighbours[k]] - points.points[query])).cast<double>();
+      const auto row = static_cast<Eigen::Index>(k);
+      terms.row(row) << p.x() * p.x(), p.x() * p.y(), p.y() * p.y(), p.x(), p.y(), 1;
+      heights[row] = p.z();
+    }
+    const Eigen::VectorXd q = terms.colPivHouseholderQr().solve(heights);
+    const QuadricMoments moments = tiled.quadricMoments(points.points[query], points.normals[query], frame, MIN_COSINE);
+    // A point on the rim may fall on either side of it: one of more than a hundred.
+    EXPECT_NEAR(moments.count(), static_cast<double>(neighbours.size()), 1);
+    const double expected = quadricCurvature(q[0], q[1], q[2], q[3], q[4]).mean;
+    EXPECT_NEAR(moments.meanCurvature(), expected, 0.02 * std::abs(expected));
   }
 }
 

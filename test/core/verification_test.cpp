@@ -6,6 +6,7 @@
 
 #include <numeric>
 
+#include "bin_picking_perception/common/kd_tree.hpp"
 #include "bin_picking_perception/scene/preprocessing.hpp"
 #include "mesh_shapes.hpp"
 #include "tee_scene.hpp"
@@ -71,6 +72,27 @@ TEST(Evidence, truePoseIsExplained)
   EXPECT_GT(evidence.matchingRate(), 0.98);
   EXPECT_LT(evidence.rms, 0.0004);
   EXPECT_GT(outlineOf(scene, poses[0]).share(), 0.9);
+}
+
+TEST(MatchingRate, isTheSameOfTheSurfaceAsOfItsPoints)
+{
+  constexpr double DISTANCE = 0.002;
+  const TrainedModel& model = *test::teeModel();
+  ASSERT_LT(DISTANCE, static_cast<double>(model.field.band()));
+  const KdTree points(model.surface.points);
+  const std::vector<Pose> truth = test::posesApart(1, 4);
+  const OrientedPoints seen = transformed(sampleSurface(model.mesh, 0.002, 5), truth[0]);
+  EXPECT_EQ(matchingRate(model.field, truth[0], seen.points, DISTANCE), 1);
+  EXPECT_EQ(matchingRate(model.field, truth[0], {}, DISTANCE), 0);
+  for (const double offset : {0.001, 0.003, 0.01})
+  {
+    Pose beside = truth[0];
+    beside.translation().x() += offset;
+    // The tree's points lie beside the place on the surface that is nearest: at the limit some are too far.
+    EXPECT_NEAR(matchingRate(model.field, beside, seen.points, DISTANCE),
+                matchingRate(points, beside, seen.points, DISTANCE), 0.06)
+        << offset;
+  }
 }
 
 TEST(Evidence, poseInFreeSpaceIsViolated)

@@ -155,4 +155,9 @@ double binPenetration(const OrientedPoints& surface, const Pose& T_camera_object
 /// Equation 9: the share of `object_points` that have a model point within `distance`. 0 for no points.
 double matchingRate(const KdTree& model_surface, const Pose& T_camera_object,
                     const std::vector<Eigen::Vector3f>& object_points, double distance);
+
+/// The same with the surface itself in place of its points, in a fraction of the time.
+/// \param distance below the field's band
+double matchingRate(const DistanceField& surface, const Pose& T_camera_object,
+                    const std::vector<Eigen::Vector3f>& object_points, double distance);
 }  // namespace bin_picking

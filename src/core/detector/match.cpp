@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 The bin_picking_perception authors
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "bin_picking_perception/common/error.hpp"
@@ -8,6 +9,7 @@
 #include "bin_picking_perception/common/parallel.hpp"
 #include "bin_picking_perception/refinement/icp.hpp"
 #include "bin_picking_perception/scene/surface_resampling.hpp"
+#include "same_place.hpp"
 #include "stages.hpp"
 
 namespace bin_picking
@@ -71,19 +73,22 @@ IcpResult polish(const Pose& T_camera_object, const PointScene& scene, IcpParame
 }
 
 /// What the points say of the pose.
-void rate(Detection& detection, const PointScene& scene, const VerificationParameters& parameters)
+void rate(Detection& detection, const PointScene& scene, const DetectorParameters& parameters)
 {
   const OrientedPoints& samples = scene.samples.surface;
-  const double distance = parameters.match_distance;
+  const double distance = parameters.verification.match_distance;
   const auto object_points =
       scene.is_part ? samples.points
                     : select(samples, inBox(samples, scene.model, detection.T_camera_object, distance)).points;
-  detection.matching_rate = matchingRate(scene.surface, detection.T_camera_object, object_points, distance);
+  // The field costs a fraction of a search, but knows no distance beyond its band.
+  detection.matching_rate = parameters.icp.method == IcpMethod::DistanceField && distance < scene.model.field.band()
+                                ? matchingRate(scene.model.field, detection.T_camera_object, object_points, distance)
+                                : matchingRate(scene.surface, detection.T_camera_object, object_points, distance);
   // Without a camera nothing says what should be seen: half of the part, as in a scan from one side, counts as all.
   const double matched = detection.matching_rate * static_cast<double>(object_points.size());
   detection.visible_fraction = std::min(1.0, matched / (0.5 * static_cast<double>(scene.model.points.size())));
   detection.score = detection.matching_rate * std::sqrt(detection.visible_fraction);
-  detection.criteria = {{"matching_rate", detection.matching_rate, parameters.min_matching_rate, false}};
+  detection.criteria = {{"matching_rate", detection.matching_rate, parameters.verification.min_matching_rate, false}};
   detection.rejection = detection.criteria.front().passed() ? "" : failureText(detection.criteria.front());
 }
 
@@ -100,32 +105,77 @@ Detection assess(const Hypothetical& pose, const PointScene& scene, const Detect
     detection.T_camera_object = refined.T_camera_object;
     detection.rms = refined.rms;
   }
-  rate(detection, scene, parameters.verification);
+  rate(detection, scene, parameters);
   return detection;
 }
 
+/// Best first. What the matching rate does not see, a feature lower than its distance, the residuals do.
 void sortByScore(std::vector<Detection>& detections)
 {
-  std::stable_sort(detections.begin(), detections.end(),
-                   [](const Detection& a, const Detection& b) { return a.score > b.score; });
+  const auto residual = [](const Detection& one) {
+    return std::isnan(one.rms) ? std::numeric_limits<double>::infinity() : one.rms;
+  };
+  std::stable_sort(detections.begin(), detections.end(), [&](const Detection& a, const Detection& b) {
+    return a.score > b.score || (a.score == b.score && residual(a) < residual(b));
+  });
+}
+
+/// Of poses that were led to one place the best stays. \return how many were led where the best was
+std::size_t dropRepeated(std::vector<Detection>& best_first, const TrainedModel& model)
+{
+  const SamePlace same_place(model, Turns::None);
+  std::vector<Place> places;
+  std::size_t at_best = 0;
+  const auto is_repeated = [&](const Detection& detection) {
+    const Place place = same_place.of(detection.T_camera_object);
+    at_best += places.empty() || same_place(places.front(), place);
+    const bool repeated = same_place.isAmong(places, place);
+    if (!repeated)
+      places.push_back(place);
+    return repeated;
+  };
+  best_first.erase(std::remove_if(best_first.begin(), best_first.end(), is_repeated), best_first.end());
+  return at_best;
+}
+
+/// Some at a time, until one place that explains nearly all was reached from several: more would lead there again.
+std::vector<Detection> refineSome(const std::vector<Hypothetical>& poses, const PointScene& scene,
+                                  const DetectorParameters& parameters, const Executor& executor)
+{
+  constexpr std::size_t MAX_REFINED = 10;
+  constexpr std::size_t ROUND = 4;  // whatever the number of threads, as the result depends on it
+  constexpr std::size_t AGREEING = 2;
+  constexpr double NEARLY_ALL = 0.98;
+  const std::size_t most = std::min(poses.size(), MAX_REFINED);
+  std::vector<Detection> refined;
+  std::vector<Detection> detections;
+  bool is_settled = false;
+  while (refined.size() < most && !is_settled)
+  {
+    const std::size_t begin = refined.size();
+    refined.resize(std::min(begin + ROUND, most));
+    executor.forEach(refined.size() - begin,
+                     [&](std::size_t i) { refined[begin + i] = assess(poses[begin + i], scene, parameters); });
+    detections = refined;
+    sortByScore(detections);
+    is_settled = dropRepeated(detections, scene.model) >= AGREEING && detections.front().matching_rate > NEARLY_ALL;
+  }
+  return detections;
 }
 
 /// The best poses, best first.
 std::vector<Detection> refineAndRate(const std::vector<Hypothetical>& poses, const PointScene& scene,
                                      const DetectorParameters& parameters, const Executor& executor)
 {
-  constexpr std::size_t MAX_REFINED = 10;
   constexpr std::size_t MAX_POLISHED = 3;
-  std::vector<Detection> detections(std::min(poses.size(), MAX_REFINED));
-  executor.forEach(detections.size(), [&](std::size_t i) { detections[i] = assess(poses[i], scene, parameters); });
-  sortByScore(detections);
+  std::vector<Detection> detections = refineSome(poses, scene, parameters, executor);
   if (parameters.icp.method != IcpMethod::DistanceField)
     return detections;
   executor.forEach(std::min(detections.size(), MAX_POLISHED), [&](std::size_t i) {
     const IcpResult polished = polish(detections[i].T_camera_object, scene, parameters.icp);
     detections[i].T_camera_object = polished.T_camera_object;
     detections[i].rms = polished.rms;
-    rate(detections[i], scene, parameters.verification);
+    rate(detections[i], scene, parameters);
   });
   sortByScore(detections);
   return detections;

@@ -22,7 +22,7 @@ SamePlace::SamePlace(const TrainedModel& model, Turns turns)
 {
   add(Pose::Identity());
   for (const NearSymmetry& near : model.near_symmetries)
-    if (near.slight || turns == Turns::All)
+    if (turns == Turns::All || (turns == Turns::Slight && near.slight))
       add(near.T_object_object);
 }
 

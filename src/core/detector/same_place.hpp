@@ -19,6 +19,7 @@ struct Place
 /// Near symmetries that two poses may differ by.
 enum class Turns
 {
+  None,
   Slight,
   All
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bin_picking_perception/common/kd_tree.hpp"
+#include "bin_picking_perception/model/distance_field.hpp"
 
 namespace bin_picking
 {
@@ -55,15 +56,33 @@ double binPenetration(const OrientedPoints& surface, const Pose& T_camera_object
   return static_cast<double>(deepest);
 }
 
-double matchingRate(const KdTree& model_surface, const Pose& T_camera_object,
-                    const std::vector<Eigen::Vector3f>& object_points, double distance)
+namespace
+{
+template <typename IsNear>
+double shareNear(const Pose& T_camera_object, const std::vector<Eigen::Vector3f>& object_points, const IsNear& is_near)
 {
   if (object_points.empty())
     return 0;
   const Eigen::Isometry3f T_object_camera = T_camera_object.inverse().cast<float>();
-  std::size_t matched = 0;
-  for (const auto& point : object_points)
-    matched += model_surface.nearest(T_object_camera * point, static_cast<float>(distance)).index >= 0;
+  const auto matched = std::count_if(object_points.begin(), object_points.end(),
+                                     [&](const Eigen::Vector3f& point) { return is_near(T_object_camera * point); });
   return static_cast<double>(matched) / static_cast<double>(object_points.size());
+}
+}  // namespace
+
+double matchingRate(const KdTree& model_surface, const Pose& T_camera_object,
+                    const std::vector<Eigen::Vector3f>& object_points, double distance)
+{
+  const auto limit = static_cast<float>(distance);
+  return shareNear(T_camera_object, object_points,
+                   [&](const Eigen::Vector3f& point) { return model_surface.nearest(point, limit).index >= 0; });
+}
+
+double matchingRate(const DistanceField& surface, const Pose& T_camera_object,
+                    const std::vector<Eigen::Vector3f>& object_points, double distance)
+{
+  const auto limit = static_cast<float>(distance);
+  return shareNear(T_camera_object, object_points,
+                   [&](const Eigen::Vector3f& point) { return std::abs(surface.at(point)) < limit; });
 }
 }  // namespace bin_picking

@@ -49,13 +49,11 @@ struct Surroundings
   Neighbourhood found = {};
 };
 
-double meanCurvature(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, double radius, Surroundings& around)
+double meanCurvature(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, double radius,
+                     const Surroundings& around)
 {
-  const Eigen::Matrix3f frame = tangentFrame(normal, radius);
-  QuadricMoments moments;
-  around.support.forEachNeighbourhood(point, normal, around.min_cosine, around.found, [&](const Neighbourhood& found) {
-    moments += quadricMoments(found, frame, normal, around.min_cosine);
-  });
+  const QuadricMoments moments =
+      around.support.quadricMoments(point, normal, tangentFrame(normal, radius), around.min_cosine);
   return moments.count() < around.min_neighbours ? std::numeric_limits<double>::quiet_NaN()
                                                  : moments.meanCurvature() / radius;
 }

@@ -25,6 +25,12 @@ struct Neighbourhood
   int stride = 1;        ///< pixels from one to the next
 };
 
+/// Oriented points, coordinate by coordinate.
+struct PointPlanes
+{
+  const float *x, *y, *z, *nx, *ny, *nz;
+};
+
 /// All planes up to the next multiple of LANES.
 void padWithZeros(Neighbourhood& found);
 

@@ -16,16 +16,8 @@ public:
   static constexpr std::size_t NUM_POWERS = 15;  // x^i y^j up to the fourth order
   static constexpr std::size_t NUM_RIGHT = 6;    // z times those up to the second
 
-  QuadricMoments() : sums_{} {}
   /// \param sums in the order of the enumerators
   explicit QuadricMoments(const std::array<double, NUM_POWERS + NUM_RIGHT>& sums) : sums_(sums) {}
-
-  QuadricMoments& operator+=(const QuadricMoments& other)
-  {
-    for (std::size_t k = 0; k < sums_.size(); ++k)
-      sums_[k] += other.sums_[k];
-    return *this;
-  }
 
   double count() const { return sums_[0]; }
   /// Mean curvature at the origin (Equations 1 to 4); NaN if the points do not fix the quadric.
@@ -42,4 +34,28 @@ Eigen::Matrix3f tangentFrame(const Eigen::Vector3f& normal, double radius);
 /// \param frame maps offsets from the sample into the frame of the fit
 QuadricMoments quadricMoments(const Neighbourhood& found, const Eigen::Matrix3f& frame, const Eigen::Vector3f& normal,
                               float min_cosine);
+
+/// Whose neighbours count, and the frame of their fit.
+struct QuadricQuery
+{
+  Eigen::Vector3f point;
+  Eigen::Vector3f normal;
+  Eigen::Matrix<float, 3, 3, Eigen::RowMajor> frame;  ///< maps offsets from the point
+  float radius;
+  float min_cosine;
+};
+
+/// Adds up the moments of points that come run by run.
+class QuadricSums
+{
+public:
+  /// Of points begin to end those that count. The planes can be read to a multiple of LANES behind begin.
+  void add(const PointPlanes& planes, std::size_t begin, std::size_t end, const QuadricQuery& query);
+
+  QuadricMoments moments() const;
+
+private:
+  using Lanes = std::array<float, Neighbourhood::LANES>;
+  std::array<Lanes, QuadricMoments::NUM_POWERS + QuadricMoments::NUM_RIGHT> sums_ = {};
+};
 }  // namespace bin_picking

@@ -72,7 +72,8 @@ Eigen::Vector3f planeNormal(const PlaneMoments& moments, const Eigen::Vector3f& 
     return given;
   const Eigen::Vector3d mean = moments.sum / moments.count;
   const Eigen::Matrix3d covariance = moments.products / moments.count - mean * mean.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance);  // in closed form: thousands of planes
   const Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>().normalized();
   return normal.dot(given) < 0 ? Eigen::Vector3f(-normal) : normal;
 }

@@ -12,6 +12,7 @@ namespace bin_picking
 namespace
 {
 constexpr std::size_t LANES = Neighbourhood::LANES;
+constexpr float TILE = 0.5f;  // of the radius: smaller ones hold less that is too far away, in more runs
 
 enum Sum : std::size_t
 {
@@ -29,18 +30,12 @@ enum Sum : std::size_t
 constexpr std::size_t NUM_SUMS = ZZ + 1;
 using LaneSums = std::array<std::array<float, LANES>, NUM_SUMS>;
 
-/// Coordinates of points and normals in the order of the tiles.
-struct Planes
-{
-  const float *x, *y, *z, *nx, *ny, *nz;
-};
-
 struct Query
 {
   float x, y, z, nx, ny, nz, squared_radius, min_cosine;
 };
 
-BIN_PICKING_SIMD void addMoments(const Planes& planes, std::size_t begin, std::size_t end, const Query& given,
+BIN_PICKING_SIMD void addMoments(const PointPlanes& planes, std::size_t begin, std::size_t end, const Query& given,
                                  LaneSums& result)
 {
   // Local copies, because what lies behind a reference might be one of the sums.
@@ -94,7 +89,7 @@ std::vector<float> plane(const std::vector<int>& order, const Coordinate& coordi
 
 TiledPoints::TiledPoints(const OrientedPoints& points, float radius)
     : radius_(radius),
-      tiles_(points.points, radius),
+      tiles_(points.points, TILE * radius),
       x_(plane(tiles_.order(), [&](std::size_t i) { return points.points[i].x(); })),
       y_(plane(tiles_.order(), [&](std::size_t i) { return points.points[i].y(); })),
       z_(plane(tiles_.order(), [&](std::size_t i) { return points.points[i].z(); })),
@@ -107,7 +102,7 @@ PlaneMoments TiledPoints::planeMoments(const Eigen::Vector3f& query, const Eigen
                                        float min_cosine) const
 {
   LaneSums sums{};
-  const Planes planes{x_.data(), y_.data(), z_.data(), nx_.data(), ny_.data(), nz_.data()};
+  const PointPlanes planes = this->planes();
   const Query q{query.x(), query.y(), query.z(), normal.x(), normal.y(), normal.z(), radius_ * radius_, min_cosine};
   tiles_.forEachRun(query, radius_,
                     [&](std::size_t begin, std::size_t end) { addMoments(planes, begin, end, q, sums); });
@@ -118,6 +113,15 @@ PlaneMoments TiledPoints::planeMoments(const Eigen::Vector3f& query, const Eigen
       total(sums[XY]), total(sums[YY]), total(sums[YZ]),                  //
       total(sums[XZ]), total(sums[YZ]), total(sums[ZZ]);
   return moments;
+}
+
+QuadricMoments TiledPoints::quadricMoments(const Eigen::Vector3f& query, const Eigen::Vector3f& normal,
+                                           const Eigen::Matrix3f& frame, float min_cosine) const
+{
+  QuadricSums sums;
+  const QuadricQuery q{query, normal, frame, radius_, min_cosine};
+  tiles_.forEachRun(query, radius_, [&](std::size_t begin, std::size_t end) { sums.add(planes(), begin, end, q); });
+  return sums.moments();
 }
 
 std::size_t TiledPoints::gather(std::size_t begin, std::size_t end, const Eigen::Vector3f& query,

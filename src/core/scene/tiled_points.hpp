@@ -7,6 +7,7 @@
 #include "../common/tile_index.hpp"
 #include "bin_picking_perception/common/oriented_points.hpp"
 #include "neighbourhood.hpp"
+#include "quadric_fit.hpp"
 
 namespace bin_picking
 {
@@ -28,6 +29,10 @@ public:
 
   /// Of the points within the radius whose normals are turned from the query's by no more than min_cosine says.
   PlaneMoments planeMoments(const Eigen::Vector3f& query, const Eigen::Vector3f& normal, float min_cosine) const;
+
+  /// Of the same, those of a quadric. \param frame maps offsets from the query into the frame of the fit
+  QuadricMoments quadricMoments(const Eigen::Vector3f& query, const Eigen::Vector3f& normal,
+                                const Eigen::Matrix3f& frame, float min_cosine) const;
 
   /// Calls visit(found) for the same points, as many at a time as a Neighbourhood holds. \param found working memory
   template <typename Visit>
@@ -51,6 +56,8 @@ public:
   }
 
 private:
+  PointPlanes planes() const { return {x_.data(), y_.data(), z_.data(), nx_.data(), ny_.data(), nz_.data()}; }
+
   /// Appends what lies within the radius. \return where it stopped: at `end`, or earlier because `found` is full
   std::size_t gather(std::size_t begin, std::size_t end, const Eigen::Vector3f& query, const Eigen::Vector3f& normal,
                      float min_cosine, Neighbourhood& found) const;

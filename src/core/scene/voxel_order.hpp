@@ -3,21 +3,20 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace bin_picking
 {
-/// A point with the place of its voxel, counted from the lowest that holds a point.
+/// A point with the place of its voxel in the box of all.
 struct VoxelMember
 {
-  std::array<std::uint32_t, 3> voxel;  ///< column, row, layer
+  std::uint64_t voxel;  ///< along the columns, row by row, layer by layer
   std::uint32_t point;
 };
 
-/// All points, voxel by voxel: along the columns, row by row, layer by layer; within a voxel in their own order. Voxels
-/// are cubes of edge `leaf` on a lattice that goes through the origin.
-/// \throws ParameterError the points reach over more voxels than 32 bits count
+/// All points, voxel by voxel; within a voxel in their own order. Voxels are cubes of edge `leaf` on a lattice that
+/// goes through the origin. \throws ParameterError the points reach over more voxels than can be counted: 2^24 along an
+/// axis, 2^62 in their box
 std::vector<VoxelMember> voxelOrder(const std::vector<Eigen::Vector3f>& points, double leaf);
 }  // namespace bin_picking
