@@ -130,7 +130,8 @@ public:
   /// and for the paper's public data sets. \param scene_is_part true: every scene point belongs to the part, so that
   /// all count in Equation 9; false: only those
   ///   inside the part's bounding box at the pose
-  /// \throws ParameterError if the detector holds more than one model; CloudError Empty for no points
+  /// \throws ParameterError if the detector holds more than one model, a point has no normal or either is not finite;
+  ///   CloudError Empty for no points
   DetectionResult match(const OrientedPoints& scene, bool scene_is_part) const;
 
   const std::vector<std::shared_ptr<const TrainedModel>>& models() const { return models_; }

@@ -444,6 +444,27 @@ TEST(Match, residualsDecideWhereTheMatchingRateIsBlind)
   }
 }
 
+TEST(Match, refusesPointsThatAreNone)
+{
+  const auto complaint = [](const OrientedPoints& points) -> std::string {
+    try
+    {
+      detector().match(points, true);
+    }
+    catch (const ParameterError& error)
+    {
+      return error.what();
+    }
+    return "";
+  };
+  OrientedPoints points = test::sphere(0.05, 200);
+  points.points[17].y() = NAN;
+  EXPECT_NE(complaint(points).find("point 17 "), std::string::npos) << complaint(points);
+  points = test::sphere(0.05, 200);
+  points.normals.pop_back();
+  EXPECT_NE(complaint(points).find("199 normals"), std::string::npos) << complaint(points);
+}
+
 TEST(Match, saysWhyNothingWasFoundAndThatTimeWasUp)
 {
   const OrientedPoints ball = test::sphere(0.05, 20000);

@@ -78,11 +78,31 @@ TriangleMesh gear()
 }
 
 /// The gear with a boss beside its axis, which tells its teeth apart.
-TriangleMesh gearWithBoss(double height, const Pose& T)
+TriangleMesh gearWithBoss(double height, const Pose& T, float width = 0.008f, double beside = 0.022)
 {
   Pose at = Pose::Identity();
-  at.translation() = Vector3d(0.022, 0.004, 0.02 + height / 2);
-  return moved(joined(gear(), moved(test::box(0.008f, 0.008f, static_cast<float>(height)), at)), T);
+  at.translation() = Vector3d(beside, 0.004, 0.02 + height / 2);
+  return moved(joined(gear(), moved(test::box(width, width, static_cast<float>(height)), at)), T);
+}
+
+std::vector<NearSymmetry> nearSymmetriesOf(const TriangleMesh& mesh, double slight_deviation)
+{
+  const OrientedPoints dense = sampleSurface(mesh, SPACING, 1);
+  const DistanceField field(dense, LEAF / 3, 1.5 * LEAF);
+  std::vector<int> queries;
+  for (std::size_t i = 0; i < dense.size(); i += 16)
+    queries.push_back(static_cast<int>(i));
+  const SelfComparison exact(dense, queries, SPACING, 4 * SPACING);
+  return findNearSymmetries(dense, field, exact, {}, 0.35 * LEAF, slight_deviation);
+}
+
+/// The one that is the turn to within a quarter of a degree.
+const NearSymmetry* turnedAlike(const std::vector<NearSymmetry>& near, const Pose& turn)
+{
+  const auto found = std::find_if(near.begin(), near.end(), [&](const NearSymmetry& one) {
+    return Eigen::AngleAxisd(one.T_object_object.linear().transpose() * turn.linear()).angle() < 0.004;
+  });
+  return found == near.end() ? nullptr : &*found;
 }
 
 TEST(SymmetrySearch, AGearHasAsManyTurnsAsTeeth)
@@ -116,25 +136,41 @@ TEST(SymmetrySearch, WhatIsAlmostSymmetricTellsTheAxisOfTheRest)
 
 TEST(NearSymmetry, AGearWithABossNearlyKeepsTheTurnsOfItsTeeth)
 {
-  const OrientedPoints dense = sampleSurface(gearWithBoss(0.002, askew()), SPACING, 1);
-  const DistanceField field(dense, LEAF / 3, 1.5 * LEAF);
-  std::vector<int> queries;
-  for (std::size_t i = 0; i < dense.size(); i += 16)
-    queries.push_back(static_cast<int>(i));
-  const SelfComparison exact(dense, queries, SPACING, 4 * SPACING);
-  const auto near = findNearSymmetries(dense, field, exact, {}, 0.35 * LEAF, 0.0025);
+  const auto near = nearSymmetriesOf(gearWithBoss(0.002, askew()), 0.0025);
   const Symmetry::Axis axis{askew().linear() * Vector3d::UnitZ(), askew() * Vector3d::Zero()};
   for (int tooth = 1; tooth < TEETH; ++tooth)
   {
     const Pose turn = rotationAbout(axis, 2 * M_PI * tooth / TEETH);
-    const auto found = std::find_if(near.begin(), near.end(), [&](const NearSymmetry& one) {
-      return Eigen::AngleAxisd(one.T_object_object.linear().transpose() * turn.linear()).angle() < 0.004;
-    });
-    ASSERT_NE(found, near.end()) << tooth;
+    const NearSymmetry* found = turnedAlike(near, turn);
+    ASSERT_NE(found, nullptr) << tooth;
     const Vector3d rim = askew() * Vector3d(0.03, 0, 0.01);
     EXPECT_LT((found->T_object_object * rim - turn * rim).norm(), 2e-4) << tooth;
     EXPECT_TRUE(found->slight) << "the boss is 2 mm high";
     EXPECT_FALSE(found->slight_all_around) << "half a tooth moves the teeth, 3 mm high";
+  }
+}
+
+TEST(NearSymmetry, ASmallFeatureMayStandOutTwiceAsFar)
+{
+  // The boss is 6 mm high, the teeth 3 mm, and half of one moves the boss by 3 mm.
+  constexpr double SLIGHT = 0.0045;
+  constexpr double BESIDE = 0.012;
+  const auto tooth = [](int k) { return rotationAbout({Vector3d::UnitZ(), Vector3d::Zero()}, 2 * M_PI * k / TEETH); };
+  const auto small = nearSymmetriesOf(gearWithBoss(0.006, Pose::Identity(), 0.008f, BESIDE), SLIGHT);
+  const auto wide = nearSymmetriesOf(gearWithBoss(0.006, Pose::Identity(), 0.022f, BESIDE), SLIGHT);
+  const auto high = nearSymmetriesOf(gearWithBoss(0.012, Pose::Identity(), 0.008f, BESIDE), SLIGHT);
+  for (int k = 1; k < TEETH; ++k)
+  {
+    const NearSymmetry* found = turnedAlike(small, tooth(k));
+    ASSERT_NE(found, nullptr) << k;
+    EXPECT_TRUE(found->slight) << k << ": also the next teeth, which are turned by little";
+    EXPECT_FALSE(found->slight_all_around) << k;
+  }
+  for (const auto* other : {&wide, &high})
+  {
+    const NearSymmetry* found = turnedAlike(*other, tooth(TEETH / 2));
+    ASSERT_NE(found, nullptr);
+    EXPECT_FALSE(found->slight) << "breaks " << found->broken << ", moves " << found->deviation;
   }
 }
 

@@ -71,7 +71,7 @@ Symmetry symmetryOf(const PartDefinition& definition, const Executor& executor);
 std::uint64_t requestHash(const PartDefinition& definition, const TrainingParameters& parameters);
 
 /// Version of the model file's layout and of what training puts there; other versions are not read.
-constexpr std::uint32_t MODEL_FILE_VERSION = 6;
+constexpr std::uint32_t MODEL_FILE_VERSION = 7;
 
 /// Binary file: magic, version, hashes, payload, checksum. Written to a temporary name first, then renamed.
 /// \throws FileError cannot be written

@@ -32,7 +32,8 @@ struct TrainingParameters
   bool fold_symmetry = true;
   int num_views = 128;
   // A keyway, a flat or a hexagon on a turned part: half of what a right pose may be off (EvaluationParameters), so
-  // that a hand that fits one turn fits the others. A hidden branch, rib or wall stands out by more.
+  // that a hand that fits one turn fits the others. A hidden branch, rib or wall stands out by more. Twice as much for
+  // a SMALL_FEATURE.
   double slight_deviation = 0.05;
 
   void visit(ParameterVisitor& v);

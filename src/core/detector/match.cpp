@@ -182,13 +182,28 @@ std::vector<Detection> refineAndRate(const std::vector<Hypothetical>& poses, con
 }
 }  // namespace
 
+namespace
+{
+void requireUsable(const OrientedPoints& scene)
+{
+  if (scene.empty())
+    throw CloudError(CloudFault::Empty, "the point set to be searched holds no points");
+  if (scene.normals.size() != scene.size())
+    throw ParameterError("the point set to be searched holds " + std::to_string(scene.size()) + " points but " +
+                         std::to_string(scene.normals.size()) + " normals; give each point one");
+  for (std::size_t i = 0; i < scene.size(); ++i)
+    if (!scene.points[i].allFinite() || !scene.normals[i].allFinite())
+      throw ParameterError("point " + std::to_string(i) +
+                           " of the set to be searched, or its normal, is not finite; leave out what was not measured");
+}
+}  // namespace
+
 DetectionResult Detector::match(const OrientedPoints& scene, bool scene_is_part) const
 {
   if (models_.size() != 1)
     throw ParameterError("matching a point set takes one model, but the detector holds " +
                          std::to_string(models_.size()));
-  if (scene.empty())
-    throw CloudError(CloudFault::Empty, "the point set to be searched holds no points");
+  requireUsable(scene);
   const TrainedModel& model = *models_.front();
   const TrainingParameters& trained = model.parameters;
   const Deadline deadline(parameters_.deadline);

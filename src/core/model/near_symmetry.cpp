@@ -62,7 +62,7 @@ public:
     const double of_inverse = turns_[turns_.size() - k].near.deviation;  // it is the same back and forth
     const double deviation = of_inverse > 0 ? of_inverse : deviationOf(motion(k), surface);
     turns_[k].near = {motion(k), axis_, broken, deviation};
-    turns_[k].kind = deviation <= slight_deviation_ ? Kind::Slight : Kind::Near;
+    turns_[k].kind = isSlight(turns_[k].near) ? Kind::Slight : Kind::Near;
   }
 
   std::vector<NearSymmetry> result()
@@ -99,6 +99,14 @@ private:
     NearSymmetry near;
   };
 
+  bool isSlight(const NearSymmetry& near) const
+  {
+    return near.deviation <= (near.broken <= SMALL_FEATURE ? 2 : 1) * slight_deviation_;
+  }
+
+  /// Half a tooth moves much of the surface, if by little.
+  static bool isGap(const Turn& turn) { return turn.tried.is_gap && turn.near.broken > SMALL_FEATURE; }
+
   /// What follows a symmetry without a gap moves the surface little because it is a small turn.
   void dropSmallTurns()
   {
@@ -106,7 +114,8 @@ private:
     for (const std::size_t direction : {std::size_t{1}, count - 1})
       for (std::size_t start = 0; start < count; ++start)
         if (turns_[start].kind == Kind::Symmetric)
-          for (std::size_t k = (start + direction) % count; turns_[k].kind == Kind::Slight; k = (k + direction) % count)
+          for (std::size_t k = (start + direction) % count; turns_[k].kind == Kind::Slight && !isGap(turns_[k]);
+               k = (k + direction) % count)
             turns_[k].kind = Kind::Near;
   }
 

@@ -70,7 +70,9 @@ const NearSymmetry* slightTurn(const TrainedModel& model, const Pose& T_object_o
 
 std::vector<std::string> describeSlightTurns(const TrainedModel& model)
 {
-  const std::string limit = millimetres(model.parameters.slight_deviation * model.diameter, 2);
+  const double slight = model.parameters.slight_deviation * model.diameter;
+  const std::string limit = millimetres(slight, 2);
+  const std::string small_feature = millimetres(2 * slight, 2) + " where only a small feature tells them";
   std::vector<std::string> sentences;
   for (const NearSymmetry& near : model.near_symmetries)
   {
@@ -83,11 +85,12 @@ std::vector<std::string> describeSlightTurns(const TrainedModel& model)
     sentences.push_back((near.slight_all_around ? "any turn" : "turns by " + anglesText(turns) + " degrees") +
                         " about " + axisText(near.axis) +
                         " may be left open where a view does not tell: they move the surface by " +
-                        millimetres((*most)->deviation, 2) + ", and up to " + limit + " is slight");
+                        millimetres((*most)->deviation, 2) + ", and up to " + limit + " is slight" +
+                        ((*most)->deviation > slight ? ", " + small_feature : ""));
   }
   if (sentences.empty() && !model.near_symmetries.empty())
     sentences.push_back("no turn may be left open where a view does not tell: none moves the surface by " + limit +
-                        " or less, but small ones");
+                        " or less (" + small_feature + "), but small ones");
   return sentences;
 }
 }  // namespace bin_picking

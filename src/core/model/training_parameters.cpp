@@ -66,10 +66,12 @@ void TrainingParameters::visit(ParameterVisitor& v)
   v.field({"fold_symmetry", "", "of points that are symmetric images of each other one is the reference of pairs"},
           fold_symmetry);
   v.field({"num_views", "", "directions from which the part is rendered", 12, 4096}, num_views);
-  v.field({"slight_deviation", "",
-           "a turn that moves the surface by at most this share of the diameter is slight: where what tells it is not "
-           "seen, the pose is returned with that turn left open, else it is ambiguous; 0: no turn is slight",
-           0, 0.5},
-          slight_deviation);
+  v.field(
+      {"slight_deviation", "",
+       "a turn that moves the surface by at most this share of the diameter (twice, if that is no more than 6 % of "
+       "the surface) is slight: where what tells it is not seen, the pose is returned with that turn left open, else "
+       "it is ambiguous; 0: no turn is slight",
+       0, 0.5},
+      slight_deviation);
 }
 }  // namespace bin_picking
