@@ -283,6 +283,28 @@ PartDefinition definitionOf(const test::TemporaryFolder& folder, const TriangleM
   return part;
 }
 
+TEST(NearSymmetry, TrainingSaysWhatMayBeLeftOpen)
+{
+  const test::TemporaryFolder folder;
+  TrainingParameters parameters;
+  parameters.leaf = LEAF;
+  parameters.num_views = 32;
+  // The diameter is 67 mm: 3.4 mm are slight, and 6.7 mm of a small feature.
+  const auto remarks = [&](double height) {
+    std::string text;
+    const PartDefinition part = definitionOf(folder, gearWithBoss(height, Pose::Identity()));
+    const auto model = trainPart(part, parameters, Executor(2));
+    for (const std::string& remark : model->remarks)
+      text += remark + "\n";
+    return text;
+  };
+  const std::string small = remarks(0.005);
+  EXPECT_NE(small.find("may be left open where a view does not tell"), std::string::npos) << small;
+  EXPECT_NE(small.find(" is slight, 6."), std::string::npos) << small;
+  const std::string high = remarks(0.012);
+  EXPECT_NE(high.find("no turn may be left open"), std::string::npos) << high;
+}
+
 TEST(SymmetrySearch, TrainingUsesWhatItFindsUnlessThePartStatesIt)
 {
   const test::TemporaryFolder folder;
