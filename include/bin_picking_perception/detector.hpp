@@ -126,10 +126,10 @@ public:
   DetectionResult detect(const DepthGrid& grid, const Request& request) const;
 
   /// The (one) part in an unorganized oriented point set: no camera grid, no segmentation; voting, clustering, ICP
-  /// (icp.method, without edges, since there is no grid) and matching rate only. Best first. For whole scans
-  /// and for the paper's public data sets. \param scene_is_part true: every scene point belongs to the part, so that
-  /// all count in Equation 9; false: only those
-  ///   inside the part's bounding box at the pose
+  /// (icp.method, without edges, since there is no grid) and matching rate only. Best first, each place once; of
+  /// one matching rate, the one with smaller residuals. For whole scans and for the paper's public data sets.
+  /// \param scene_is_part true: every scene point belongs to the part, so that all count in Equation 9; false: only
+  ///   those inside the part's bounding box at the pose
   /// \throws ParameterError if the detector holds more than one model, a point has no normal or either is not finite;
   ///   CloudError Empty for no points
   DetectionResult match(const OrientedPoints& scene, bool scene_is_part) const;

@@ -444,6 +444,24 @@ TEST(Match, residualsDecideWhereTheMatchingRateIsBlind)
   }
 }
 
+TEST(Match, endsWherePosesAgreeButForThePaper)
+{
+  std::mt19937 random(3);
+  const OrientedPoints scan =
+      transformed(sampleSurface(test::teeModel()->mesh, 0.001, 77), test::randomPose(random, 0.3));
+  const auto refined = [&](DetectorParameters parameters, bool verify) {
+    parameters.verification.enabled = verify;
+    const DetectionResult result = detector(parameters).match(scan, true);
+    const auto count = std::find_if(result.counts.begin(), result.counts.end(),
+                                    [](const StageCount& one) { return one.stage == "refined"; });
+    return count == result.counts.end() ? 0 : count->count;
+  };
+  const DetectorParameters parameters = DetectorParameters::preset("paper");
+  EXPECT_GE(refined(parameters, true), 4);
+  EXPECT_LT(refined(parameters, true), 10);
+  EXPECT_EQ(refined(parameters, false), 10);
+}
+
 TEST(Match, refusesPointsThatAreNone)
 {
   const auto complaint = [](const OrientedPoints& points) -> std::string {

@@ -140,7 +140,7 @@ std::size_t dropRepeated(std::vector<Detection>& best_first, const TrainedModel&
 
 /// Some at a time, until one place that explains nearly all was reached from several: more would lead there again.
 std::vector<Detection> refineSome(const std::vector<Hypothetical>& poses, const PointScene& scene,
-                                  const DetectorParameters& parameters, const Executor& executor)
+                                  const DetectorParameters& parameters, const Executor& executor, StageClock& clock)
 {
   constexpr std::size_t MAX_REFINED = 10;
   constexpr std::size_t ROUND = 4;  // whatever the number of threads, as the result depends on it
@@ -158,17 +158,20 @@ std::vector<Detection> refineSome(const std::vector<Hypothetical>& poses, const 
                      [&](std::size_t i) { refined[begin + i] = assess(poses[begin + i], scene, parameters); });
     detections = refined;
     sortByScore(detections);
-    is_settled = dropRepeated(detections, scene.model) >= AGREEING && detections.front().matching_rate > NEARLY_ALL;
+    const bool agree = dropRepeated(detections, scene.model) >= AGREEING;
+    // The paper refines every candidate.
+    is_settled = parameters.verification.enabled && agree && detections.front().matching_rate > NEARLY_ALL;
   }
+  clock.count("refined", static_cast<double>(refined.size()));
   return detections;
 }
 
 /// The best poses, best first.
 std::vector<Detection> refineAndRate(const std::vector<Hypothetical>& poses, const PointScene& scene,
-                                     const DetectorParameters& parameters, const Executor& executor)
+                                     const DetectorParameters& parameters, const Executor& executor, StageClock& clock)
 {
   constexpr std::size_t MAX_POLISHED = 3;
-  std::vector<Detection> detections = refineSome(poses, scene, parameters, executor);
+  std::vector<Detection> detections = refineSome(poses, scene, parameters, executor, clock);
   if (parameters.icp.method != IcpMethod::DistanceField)
     return detections;
   executor.forEach(std::min(detections.size(), MAX_POLISHED), [&](std::size_t i) {
@@ -226,7 +229,7 @@ DetectionResult Detector::match(const OrientedPoints& scene, bool scene_is_part)
   regions.push_back(std::move(region));
   const auto poses = searchPoses(regions, nullptr, model, parameters_, deadline, executor_, clock, result.partial);
   const PointScene searched{model, *surfaces_.front(), {regions.front().samples, {}}, scene, scene_is_part};
-  std::vector<Detection> detections = refineAndRate(poses, searched, parameters_, executor_);
+  std::vector<Detection> detections = refineAndRate(poses, searched, parameters_, executor_, clock);
   clock.lap("refinement");
   for (auto& detection : detections)
     (detection.rejection.empty() ? result.detections : result.rejected).push_back(std::move(detection));
